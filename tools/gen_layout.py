@@ -196,8 +196,8 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--check", action="store_true", help="exit 1 where a committed file differs")
     check = parser.parse_args().check
-    written = ((LAYOUT, generate()), (LAYOUTS, generate_csharp()), (LAYOUT_JS, generate_javascript()))
-    written += ((LIMITS_CS, limits_csharp()), (LIMITS_JS, limits_javascript()))
+    written = [(LAYOUT, generate()), (LAYOUTS, generate_csharp()), (LAYOUT_JS, generate_javascript())]
+    written += [(LIMITS_CS, limits_csharp()), (LIMITS_JS, limits_javascript())]
     for path, text in written:
         if not check:
             path.write_text(text)

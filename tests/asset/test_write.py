@@ -50,7 +50,7 @@ def test_f32_file_returns_every_array_as_float32() -> None:
     assert back
     for path, expected in tensors(avatar).items():
         unit = path.endswith(("rotations", "barycentrics"))  # renormalised by the reader
-        bound = 4 * np.finfo(np.float32).eps if unit else 0
+        bound = 4 * float(np.finfo(np.float32).eps) if unit else 0.0
         np.testing.assert_allclose(back[path], np.asarray(expected, back[path].dtype), rtol=0, atol=bound, err_msg=path)
 
 

@@ -15,7 +15,7 @@ from mua.limits import GROWTH
 from mua.rig.texel_map import TexelMap
 
 SCALES = slice(7, 10)
-SINGLE = 4 * np.finfo(np.float32).eps
+SINGLE = 4 * float(np.finfo(np.float32).eps)
 
 
 def block(avatar: Avatar, members: list[int]) -> Avatar:

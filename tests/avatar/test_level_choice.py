@@ -23,7 +23,7 @@ def camera(z: float) -> Camera:
 
 
 @pytest.mark.parametrize("case", CASES, ids=[case["name"] for case in CASES])
-def test_the_table_that_both_players_choose_by(case: dict) -> None:  # type: ignore[type-arg]
+def test_the_table_that_both_players_choose_by(case: dict) -> None:
     avatars = [Seen(a["distance"], a["texel"], tuple(a["counts"]), a["shown"]) for a in case["avatars"]]
     assert choose_levels(avatars, case["budget"]) == case["levels"]
 

@@ -35,7 +35,7 @@ def test_no_splats_give_the_background(screen: tuple[int, int]) -> None:
 
 
 def test_one_splat_shows_its_colour_in_the_middle() -> None:
-    image = render_over(splats([[0, 0, 0]], [RED], scale=0.1), front())
+    image = render_over(splats(np.zeros((1, 3)), np.array([RED]), scale=0.1), front())
     expected = WEIGHT * np.array(RED) + (1 - WEIGHT)  # to what a pixel adds to a splat of 20
     np.testing.assert_allclose(image[32, 32], expected, rtol=0, atol=5e-3)
     np.testing.assert_array_equal(image[0, 0], 1)
@@ -45,7 +45,7 @@ def test_one_splat_shows_its_colour_in_the_middle() -> None:
 def test_the_nearer_splat_hides_the_farther_in_any_order(first: tuple[float, float, float]) -> None:
     colors = [first, GREEN if first == RED else RED]
     places = [[0, 0, 0.3 if color == GREEN else -0.3] for color in colors]
-    image = render_over(splats(places, colors, scale=0.2), front())
+    image = render_over(splats(np.array(places), np.array(colors), scale=0.2), front())
     assert image[32, 32].argmax() == 1
 
 

@@ -8,6 +8,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -124,6 +125,8 @@ def test_the_file_says_what_was_held_out(baked: Baked) -> None:
 
 
 def test_leaves_a_contact_sheet_and_figures(baked: Baked) -> None:
+    assert baked.sheet is not None
+    assert baked.figures is not None
     with Image.open(baked.sheet) as sheet:
         assert np.asarray(sheet).std() > 0
     told = json.loads(baked.output.with_name("a_errors.json").read_text())
@@ -150,7 +153,7 @@ SKELETON = ("names", "parents", "bind_rotations", "bind_translations", "root")
 CHARACTER = ("base_color", "skin_indices", "skin_weights", "looseness")
 
 
-def _other(owner: object, name: str) -> object:
+def _other(owner: object, name: str) -> Any:
     """Another value of a field."""
     value = getattr(owner, name)
     if isinstance(value, np.ndarray):

@@ -6,6 +6,7 @@ import os
 from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import pytest
 from commands import Commands, python
@@ -28,8 +29,9 @@ HEAVY = {"torch", "warp", "pxr"}
     ],
 )
 def test_a_number_that_no_bake_can_have_is_refused(options: dict[str, int], sentence: str) -> None:
+    given: dict[str, Any] = {"seed": 0, "frames": None, "texels": None} | options
     with pytest.raises(InputError, match=sentence):
-        check_settings("tiny", "closed-form", **({"seed": 0, "frames": None, "texels": None} | options))
+        check_settings("tiny", "closed-form", **given)
 
 
 def test_no_processes_are_refused_and_all_cores_the_default() -> None:

@@ -105,6 +105,7 @@ def test_a_bake_tells_the_fidelity_and_its_contact_sheet_begins_with_it(tmp_path
     order = Order(tmp_path / "a.muaavatar", tmp_path / "work", SMALL, "cpu", character=column_file(tmp_path))
     baked = bake(order, Hearing())
     assert any(sentence.startswith("Splats compared with the source: silhouettes overlap by") for sentence in told)
+    assert baked.sheet is not None
     with Image.open(baked.sheet) as sheet:
         strip = CELL[1] + CAPTION
         assert sheet.height % strip == 0

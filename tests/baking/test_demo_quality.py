@@ -70,7 +70,7 @@ def missed_on_unseen_motion(errors: dict[str, Errors]) -> dict[str, float]:
 
 def missed_by_a_stage(errors: Errors) -> dict[str, float]:
     """What bands, bases or coefficients lose more of than they may, on training frames."""
-    missed = {}
+    missed: dict[str, float] = {}
     for attribute in ("offset", "rotation", "scale", "SH"):
         bands, best, student = (errors.explained(attribute, name) for name in ("bands", "best", "student"))
         stages = {"bands": (bands, 0.8), "bases": (best, bands - 0.1), "coefficients": (student, best - LOST)}

@@ -176,7 +176,12 @@ def test_an_edge_of_many_triangles_is_no_opening() -> None:
 
 def test_each_pose_has_views_of_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
     firsts: list[int] = []
-    monkeypatch.setattr(one_sided, "around", lambda splats, texel, *, first: firsts.append(first) or [])
+
+    def around(splats: Splats, texel: float, *, first: int) -> list[Camera]:
+        firsts.append(first)
+        return []
+
+    monkeypatch.setattr(one_sided, "around", around)
     one_sided.shares_behind(closed(), closed().clips)
     assert firsts == [0, 10]
 

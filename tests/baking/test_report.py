@@ -37,9 +37,10 @@ GROUPS = {"training": errors(0.1), "walk (end)": errors(0.2, frames=1), "dance":
 
 
 def printed(groups: dict[str, Errors]) -> list[list[str]]:
-    console = Console(file=io.StringIO(), width=200)
+    output = io.StringIO()
+    console = Console(file=output, width=200)
     console.print(table(groups))
-    return [line.replace("│", " ").split("  ") for line in console.file.getvalue().splitlines() if "│" in line]
+    return [line.replace("│", " ").split("  ") for line in output.getvalue().splitlines() if "│" in line]
 
 
 def test_held_out_clips_count_by_their_frames() -> None:
@@ -134,10 +135,11 @@ def test_a_sentence_that_comes_several_times_in_a_stage_is_said_once() -> None:
 
 @pytest.mark.parametrize("width", [80, 1000])
 def test_no_figure_of_the_table_is_cut(width: int) -> None:
-    console = Console(file=io.StringIO(), width=width)
+    output = io.StringIO()
+    console = Console(file=output, width=width)
     named = {f"a clip with a long name, number {i} [end]": errors(0.1 * i) for i in range(1, 4)}
     console.print(table({"training": errors(0.1), **named}))
-    shown = console.file.getvalue()  # type: ignore[attr-defined]
+    shown = output.getvalue()
     assert "…" not in shown
     for figure in ("99.0 %", "96.0 %", "91.0 %"):
         assert figure in shown

@@ -140,7 +140,7 @@ def test_a_capture_that_holds_all_cameras_out_is_refused(capture: Path, tmp_path
 class Until:
     """A listener that does something after a step of the last stage."""
 
-    def __init__(self, step: int, do: Callable[[], None]) -> None:
+    def __init__(self, step: int, do: Callable[[], object]) -> None:
         self._at, self._do, self._stage = step, do, ""
 
     def stage(self, name: str) -> None:
@@ -165,7 +165,7 @@ def test_pictures_that_vanish_are_named_and_what_was_trained_is_kept(
     monkeypatch.setitem(settings.PRESETS, "tiny", FEW)
     given, output = copied(capture, tmp_path / "capture"), tmp_path / "teacher"
     images = given / "images" / "walk"
-    hide = Until(1, lambda: images.rename(images.with_name("hidden")) and None)
+    hide = Until(1, lambda: images.rename(images.with_name("hidden")))
     with pytest.raises(InputError, match=r"^camera (front|left|right), clip walk, frame \d: .*\.png: there is no such"):
         mua.teach(given, output=output, steps=3, texels=TEXELS, listener=hide)
     assert (output / "work" / "mean texture.pt").is_file()

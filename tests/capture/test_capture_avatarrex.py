@@ -41,7 +41,8 @@ def joints_seen(source: Path, camera: str) -> Array:
         moved = file["transl"]
     found = np.empty((FRAMES, 55, 2))
     for frame in range(FRAMES):
-        turned, at = [], []
+        turned: list[Array] = []
+        at: list[Array] = []
         for joint, vector in enumerate(vectors[frame]):
             above, offset = int(skeleton.parents[joint]), skeleton.bind_translations[joint]
             local = Rotation.from_rotvec(vector).as_matrix()

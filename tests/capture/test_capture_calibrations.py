@@ -318,8 +318,8 @@ def test_pictures_become_clips_without_those_that_a_camera_lacks(
                 Image.new("RGB", SIZE, (20 * number,) * 3).save(source / kind / name / f"{number:04d}.png")
     (source / "masks" / NAMES[1] / "0006.png").unlink()
     easymocap(tmp_path, sized=False)
-    line = ("capture", "describe", source, *given, "--calibration", tmp_path, "-o", tmp_path / "out", "--rate", 50)
-    assert "2 cameras, 6 frames in 2 clips" in command(*line).out
+    line = ("describe", source, *given, "--calibration", tmp_path, "-o", tmp_path / "out", "--rate", 50)
+    assert "2 cameras, 6 frames in 2 clips" in command("capture", *line).out
     said = json.loads((tmp_path / "out" / "capture.json").read_text())
     assert [(clip["first"], clip["first_image"], clip["frames"]) for clip in said["clips"]] == [(0, 3, 3), (4, 7, 3)]
     assert said["rate"] == 50
@@ -337,8 +337,8 @@ def test_cameras_are_those_of_their_name_whatever_the_order_of_the_file(
         (source / "images" / name).mkdir(parents=True)
         for number in range(2):
             Image.new("RGB", SIZE).save(source / "images" / name / f"{number}.png")
-    line = ("capture", "describe", source, *given, "--calibration", calibration, "-o", tmp_path / "out")
-    ended = command(*line, "--height", 1.5, "--leave-out", "hat", "--leave-out", "shoes")
+    line = ("describe", source, *given, "--calibration", calibration, "-o", tmp_path / "out")
+    ended = command("capture", *line, "--height", 1.5, "--leave-out", "hat", "--leave-out", "shoes")
     assert ended.status == 0, ended
     capture = open_capture(tmp_path / "out")
     for name, matrix in zip(NAMES, MATRICES, strict=True):
@@ -359,8 +359,8 @@ def test_the_command_takes_unit_and_axes_back(given: tuple[object, ...], command
         text = text.replace(str(vector(matrix).tolist()), str(vector(turned).tolist()))
         text = text.replace(str(matrix[:3, 3].tolist()), str(turned[:, 3].tolist()))
     calibration.write_text(text)
-    line = ("capture", "describe", tmp_path / "anna", *given, "--calibration", calibration, "-o", tmp_path / "out")
-    ended = command(*line, "--axes", "Z,X,Y", "--scale", 0.001)
+    line = ("describe", tmp_path / "anna", *given, "--calibration", calibration, "-o", tmp_path / "out")
+    ended = command("capture", *line, "--axes", "Z,X,Y", "--scale", 0.001)
     assert ended.status == 0, ended
     for camera, matrix in zip(open_capture(tmp_path / "out").cameras, MATRICES, strict=True):
         np.testing.assert_allclose(camera.world_to_camera, matrix, atol=ROUNDING)
@@ -369,17 +369,19 @@ def test_the_command_takes_unit_and_axes_back(given: tuple[object, ...], command
 def test_what_a_folder_lacks_is_named(given: tuple[object, ...], command: Commands, tmp_path: Path) -> None:
     source, calibration = tmp_path / "anna", write(tmp_path, "anipose")
     source.mkdir()
-    line = ("capture", "describe", source, "-o", tmp_path / "out")
+    line = ("describe", source, "-o", tmp_path / "out")
     calibrated = (*line, "--calibration", calibration, *given)
-    assert "found no images; looked for videos/cam00.mp4" in command(*calibrated).sentence
-    assert "expected --template and --motion with it" in command(*line, "--calibration", calibration).sentence
-    assert "--axes and --scale apply to a --calibration" in command(*line, *given, "--scale", 0.001).sentence
+    assert "found no images; looked for videos/cam00.mp4" in command("capture", *calibrated).sentence
+    assert (
+        "expected --template and --motion with it" in command("capture", *line, "--calibration", calibration).sentence
+    )
+    assert "--axes and --scale apply to a --calibration" in command("capture", *line, *given, "--scale", 0.001).sentence
     for name in ("cam01", "side"):
         (source / "images" / name).mkdir(parents=True)
         Image.new("RGB", SIZE).save(source / "images" / name / "0.png")
-    assert "has no camera called side, as images in" in command(*calibrated).sentence
+    assert "has no camera called side, as images in" in command("capture", *calibrated).sentence
     (source / "images" / "side").rename(source / "images" / "cam02")
-    assert "no two frames in a row have images and masks of all 2 cameras" in command(*calibrated).sentence
+    assert "no two frames in a row have images and masks of all 2 cameras" in command("capture", *calibrated).sentence
     calibration.write_text(toml(head="cameras.x{name}", name="'a'"))
-    assert "two cameras are called a; expected one for each" in command(*calibrated).sentence
+    assert "two cameras are called a; expected one for each" in command("capture", *calibrated).sentence
     assert not (tmp_path / "out" / "capture.json").exists()

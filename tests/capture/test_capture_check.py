@@ -404,7 +404,7 @@ def test_a_distortion_that_was_left_out_is_named(small_capture: Capture, tmp_pat
     rows, columns = np.mgrid[:SIDE, :SIDE] + 0.5
     seen = np.stack([columns, rows]) / 50 - SIDE / 100
     seen *= np.minimum(1, 0.8 / np.linalg.norm(seen, axis=0))  # farther out, where nobody is, the lens folds over
-    x, y = undistorted(*seen, (k1, 0.0, 0.0, 0.0, 0.0))
+    x, y = undistorted(seen[0], seen[1], (k1, 0.0, 0.0, 0.0, 0.0))
     column, row = ((50 * at + SIDE / 2).clip(0, SIDE - 1).astype(int) for at in (x, y))
     for clip, camera in product(near.clips, wide):
         for frame in range(clip.frames):

@@ -132,8 +132,8 @@ def test_limbs_become_as_long_as_the_persons(surfaces: Surfaces, known: Clip) ->
     found = joints(surfaces, fitted.clip)
     for a, b in (("LHip", "LKnee"), ("RKnee", "RAnkle"), ("LShoulder", "LElbow")):
         pair = [list(ROLES).index(name) for name in (a, b)]
-        lengths = [np.linalg.norm(np.diff(one[:, pair], axis=1)[:, 0], axis=1) for one in (found, points)]
-        np.testing.assert_allclose(*lengths, atol=1e-6)
+        fit, seen = (np.linalg.norm(np.diff(one[:, pair], axis=1)[:, 0], axis=1) for one in (found, points))
+        np.testing.assert_allclose(fit, seen, atol=1e-6)
 
 
 def test_points_that_were_not_seen_are_bridged(surfaces: Surfaces, known: Clip) -> None:

@@ -60,7 +60,11 @@ def test_what_is_written_is_read_back(capture: Capture) -> None:
 
 
 def test_every_field_is_written(capture: Capture) -> None:
-    patterns = {"backgrounds": "b/{camera}.png", "meshes": "m/{clip}/{frame}.ply", "tracks": "{clip}.npz"}
+    patterns: dict[str, Any] = {
+        "backgrounds": "b/{camera}.png",
+        "meshes": "m/{clip}/{frame}.ply",
+        "tracks": "{clip}.npz",
+    }
     whole = replace(capture, **patterns, tracks_2d="t/{clip}/{camera}.npz")
     write_capture(whole)
     found = open_capture(capture.folder)

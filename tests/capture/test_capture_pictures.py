@@ -1,6 +1,7 @@
 """Images of a camera: every kind of file gives the same colours, and one of another size is refused."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -28,7 +29,8 @@ def test_colours_are_read_with_the_alpha_that_the_file_has(tmp_path: Path, mode:
     image = Image.fromarray(colours)
     image.putalpha(Image.fromarray(GREY)) if mode == "RGBA" else None
     image = image.quantize(8) if mode == "P" else image
-    image.save(file, **({"transparency": 0} if mode == "P" else {}))
+    options: dict[str, Any] = {"transparency": 0} if mode == "P" else {}
+    image.save(file, **options)
     found = read_picture(file, number=0, size=SIZE)
     assert found.shape == (2, 3, 3 if mode == "RGB" else 4)
     if mode != "P":

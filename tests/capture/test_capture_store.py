@@ -95,7 +95,7 @@ CHANGES: dict[str, tuple[Callable[[Capture], Capture], dict[str, Any]]] = {  # o
 
 @pytest.mark.parametrize("change", CHANGES)
 def test_what_was_stored_for_something_else_is_not_used(small_capture: Capture, tmp_path: Path, change: str) -> None:
-    asked = {"crop": True, "rows": 32}
+    asked: dict[str, Any] = {"crop": True, "rows": 32}
     ViewStore(small_capture, tmp_path, crop=True, rows=32).view("walk", 1, "front")
     of_capture, of_store = CHANGES[change]
     changed, asked = of_capture(small_capture), asked | of_store
@@ -177,10 +177,14 @@ def test_a_view_that_was_half_written_is_none(
 def test_the_empty_set_is_read_once(small_capture: Capture, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     capture = replace(small_capture, backgrounds=str(tmp_path / "{camera}.png"))
     Image.new("RGB", (SIDE, SIDE), (1, 2, 3)).save(tmp_path / "front.png")
-    store, read = ViewStore(capture, tmp_path / "store"), []
-    monkeypatch.setattr(
-        stores, "read_picture", lambda path, **asked: (read.append(path), read_picture(path, **asked))[1]
-    )
+    store = ViewStore(capture, tmp_path / "store")
+    read: list[Path] = []
+
+    def reading(path: Path, **asked: Any) -> Any:
+        read.append(path)
+        return read_picture(path, **asked)
+
+    monkeypatch.setattr(stores, "read_picture", reading)
     for frame in (0, 1, 0, 1):
         store.view("walk", frame, "front")
     assert read == [tmp_path / "front.png"]

@@ -3,6 +3,7 @@
 import json
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -62,6 +63,7 @@ def test_points_in_the_world_are_read_with_where_they_are_on_the_template(made: 
     np.testing.assert_allclose(world.points, surfaces(made, "walk"))
     np.testing.assert_array_equal(world.weights, 1)
     assert world.directions is None
+    assert world.bind is not None
     np.testing.assert_allclose(world.bind, made.surfaces.vertices)
 
 
@@ -106,7 +108,7 @@ def test_what_is_wrong_in_a_file_of_tracks_is_a_sentence(capture: Capture) -> No
     points = surfaces(capture, "walk")
     broken = points.copy()
     broken[2, 7] = np.nan
-    sentences = {
+    sentences: dict[str, dict[str, Any]] = {
         r"walk.npz: points has shape \[3, \d+, 3\]; expected \[4, points, 3\]: clip 'walk' has 4": {
             "points": points[:3]
         },

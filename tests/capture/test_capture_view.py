@@ -83,7 +83,7 @@ def test_a_smaller_picture_holds_means_of_areas(old: int, new: int) -> None:
 
 def test_an_edge_that_is_rounded_beyond_the_picture_is_its_end() -> None:
     picture = np.arange(12.0).reshape(3, 4, 1)
-    beyond = np.nextafter([[0, 1.5, 3], [0, 2, 4]], np.inf)
+    beyond = np.nextafter(np.array([[0, 1.5, 3], [0, 2, 4]]), np.inf)
     found = area_average(picture, beyond[0], beyond[1])
     np.testing.assert_allclose(found, area_average(picture, np.array([0, 1.5, 3]), np.array([0, 2.0, 4])), atol=1e-6)
 
@@ -145,7 +145,7 @@ def test_an_empty_mask_keeps_the_whole_picture(tmp_path: Path) -> None:
 def test_colours_at_the_rim_are_not_darkened_by_what_has_no_colour(tmp_path: Path) -> None:
     """A red square whose surroundings are clear white stays red where new pixels lie over its edge."""
     capture = make_capture(tmp_path)
-    picture = np.tile(np.uint8([255, 255, 255, 0]), (SIDE, SIDE, 1))
+    picture = np.tile(np.array([255, 255, 255, 0], np.uint8), (SIDE, SIDE, 1))
     picture[10:31, 10:31] = [200, 0, 0, 255]
     Image.fromarray(picture).save(capture.files("walk", 0, "front").image)
     view = capture.view("walk", 0, "front", rows=SIDE // 4)
@@ -156,7 +156,7 @@ def test_colours_at_the_rim_are_not_darkened_by_what_has_no_colour(tmp_path: Pat
 
 def test_what_is_nearly_clear_has_its_colour(tmp_path: Path) -> None:
     capture = make_capture(tmp_path)
-    faint = np.tile(np.uint8([200, 90, 10, 2]), (SIDE, SIDE, 1))
+    faint = np.tile(np.array([200, 90, 10, 2], np.uint8), (SIDE, SIDE, 1))
     Image.fromarray(faint).save(capture.files("walk", 0, "front").image)
     view = capture.view("walk", 0, "front", rows=SIDE // 2)
     np.testing.assert_allclose(255 * view.image[5, 5], [200, 90, 10], atol=0.5)

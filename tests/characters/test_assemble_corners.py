@@ -1,6 +1,7 @@
 """Corners of triangles keep their place, texture coordinates, colour and material through all that assembling does."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -32,6 +33,11 @@ def painted(source: Part, material: int, *, inward: Array) -> Part:
     return replace(source, material=material, faces=faces, uv=uv.reshape(-1, 2), uv_faces=uv_faces, colors=colors)
 
 
+def first_three_twice(part: Part) -> dict[str, Any]:
+    """The fields of a part whose first three rows come twice."""
+    return {name: np.concatenate([getattr(part, name)[:3]] * 2 + [getattr(part, name)[3:]]) for name in NAMES}
+
+
 def merged() -> tuple[Surfaces, list[Part]]:
     """Three boxes of two materials on one mesh, one wound inward, in a mirrored space; some triangles come twice."""
     box = boxes(wound=(1, 1, -1))
@@ -41,12 +47,7 @@ def merged() -> tuple[Surfaces, list[Part]]:
         painted(replace(box, faces=box.faces[own]), m, inward=np.zeros(18, bool))
         for m, own in enumerate((upper, ~upper))
     ]
-    twice = [
-        replace(
-            one, **{name: np.concatenate([getattr(one, name)[:3]] * 2 + [getattr(one, name)[3:]]) for name in NAMES}
-        )
-        for one in parts
-    ]
+    twice = [replace(one, **first_three_twice(one)) for one in parts]
     away = [replace(one, positions=placed(np.linalg.inv(MIRROR), one.positions)) for one in twice]
     skin = Skin(np.arange(5), np.linalg.inv(BIND) @ MIRROR)
     whole = scene(skins=(skin,), parts=tuple(away), materials=(GREY, Material("other", GREY.image)))

@@ -82,7 +82,7 @@ def test_scaled_joints_stretch_the_surface_as_in_the_source() -> None:
     assert clip.stretches is not None
     assert clip.stretches.joints.tolist() == [1, 2, 3, 4]
     for frame in (0, 4, 8):
-        vertices = stretched(surfaces, clip.stretches, frame, surfaces.vertices)  # type: ignore[arg-type]
+        vertices = stretched(surfaces, clip.stretches, frame, surfaces.vertices)
         shaped = replace(surfaces, vertices=vertices)
         ours = posed(shaped, clip.rotations[frame], clip.translations[frame])[surfaces.faces]
         np.testing.assert_allclose(ours, skinned(whole, frame), atol=WEIGHT_BOUND)

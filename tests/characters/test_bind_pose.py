@@ -53,7 +53,7 @@ def test_body_of_rigid_parts_stays_where_the_rest_pose_has_it(tmp_path: Path) ->
     armour = surfaces.vertices[(np.abs(surfaces.vertices - np.clip(surfaces.vertices, low, high)) < 1e-6).all(axis=1)]
     np.testing.assert_allclose(np.ptp(armour, axis=0), np.ptp(POINTS, axis=0), atol=FLOAT_BOUND)
     places = surfaces.skeleton.world(surfaces.skeleton.bind_rotations, surfaces.skeleton.bind_translations)[1]
-    np.testing.assert_allclose(places, [[0, 0, 0], [0, 0.5, 0], [0, 1, 0]], atol=FLOAT_BOUND)
+    np.testing.assert_allclose(places, np.array([[0, 0, 0], [0, 0.5, 0], [0, 1, 0]]), atol=FLOAT_BOUND)
     bind = surfaces.skeleton.bind_pose
     np.testing.assert_allclose(posed(surfaces, bind.rotations, bind.translations), surfaces.vertices, atol=1e-7)
 

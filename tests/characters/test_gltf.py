@@ -70,8 +70,8 @@ def test_mesh_on_no_joint_is_left_out_with_a_note(tmp_path: Path) -> None:
 
 def test_positions_equal_those_of_a_second_reader(shared_data: Any) -> None:
     path = shared_data.path("characters/Fox.glb")
-    scene = trimesh.load(path, process=False)
-    theirs = scene.to_geometry().vertices * 0.01
+    scene = trimesh.load_scene(path, process=False)
+    theirs = scene.to_mesh().vertices * 0.01
     ours = read_surfaces(path).vertices
     for here, there in ((ours, theirs), (theirs, ours)):
         assert cKDTree(here).query(there)[0].max() < FLOAT_BOUND

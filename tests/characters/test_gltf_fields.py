@@ -35,7 +35,7 @@ def rich() -> Any:
     bones = [{"bone": "hips", "node": 0}, {"bone": "spine", "node": 1}]
     first = {"meshAnnotations": [{"mesh": 0, "firstPersonFlag": "Auto"}]}
     meta = {"title": "A", "author": "B", "licenseName": "CC0"}
-    springs = {"boneGroups": [{}]}
+    springs: dict[str, Any] = {"boneGroups": [{}]}
     glb.json["extensions"] = {
         "VRM": {"humanoid": {"humanBones": bones}, "firstPerson": first, "meta": meta, "secondaryAnimation": springs},
         "KHR_materials_variants": {"variants": [{"name": "night"}]},

@@ -1,6 +1,7 @@
 """Textures of glTF materials and their coordinates."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -91,13 +92,13 @@ def test_texture_that_is_no_image_is_named(tmp_path: Path) -> None:
 
 def test_glow_is_seen_where_it_is_brighter_than_the_colour(tmp_path: Path) -> None:
     picture = np.full((1, 1, 4), 188, np.uint8)  # sRGB 188 is half of the light of 255
-    glow = {"emissiveFactor": [1, 0, 0.1]}
+    glow: dict[str, Any] = {"emissiveFactor": [1, 0, 0.1]}
     (material,) = read(textured(picture, **glow), tmp_path).materials
     np.testing.assert_allclose(material.image[0, 0], [255, 188, 188, 255], atol=1)
 
 
 def test_strength_multiplies_glow(tmp_path: Path) -> None:
-    strong = {"extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 5}}}
+    strong: dict[str, Any] = {"extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 5}}}
     glb = textured(np.zeros((1, 1, 4), np.uint8), emissiveFactor=[0.1, 1, 0], **strong)
     (material,) = read(glb, tmp_path).materials
     np.testing.assert_allclose(material.image[0, 0], [188, 255, 0, 255], atol=1)

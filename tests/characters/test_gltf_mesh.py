@@ -140,6 +140,7 @@ def with_colors(values: Any, dtype: str = "f4", **fields: Any) -> Glb:
 
 def test_vertex_colours_reach_the_corners_of_triangles(tmp_path: Path) -> None:
     surfaces = read(with_colors(RAMP[:, :3]), tmp_path)
+    assert surfaces.corner_colors is not None
     np.testing.assert_allclose(surfaces.corner_colors[..., :3], RAMP[TRIANGLES][..., :3], atol=1e-7)
     assert (surfaces.corner_colors[..., 3] == 1).all()
 
@@ -150,6 +151,7 @@ def test_vertex_colours_in_whole_numbers_are_brought_to_one(
     tmp_path: Path, dtype: str, most: int, fields: dict[str, Any]
 ) -> None:
     surfaces = read(with_colors(np.round(RAMP * most), dtype, **fields), tmp_path)
+    assert surfaces.corner_colors is not None
     np.testing.assert_allclose(surfaces.corner_colors[..., :3], RAMP[TRIANGLES][..., :3], atol=0.51 / most)
 
 
@@ -159,6 +161,7 @@ def test_opacity_of_vertices_counts_where_the_material_is_not_opaque(tmp_path: P
         glb.json["materials"] = [{"alphaMode": mode}]
         primitive(glb)["material"] = 0
         surfaces = read(glb, tmp_path)
+        assert surfaces.corner_colors is not None
         np.testing.assert_allclose(surfaces.corner_colors[..., 3], expected[TRIANGLES][..., 3], atol=1e-7)
 
 
@@ -188,7 +191,7 @@ def test_vertex_colours_end_in_the_atlas(tmp_path: Path) -> None:
     assert (character.base_color[..., 1] == 255).all()
 
 
-def morphed(glb: Glb, *, mesh: list[float] | None, node: list[float] | None) -> Glb:
+def morphed(glb: Glb, *, mesh: list[float] | None, node: list[Any] | None) -> Glb:
     """Two targets: one moves all by 1 m along X, one by 1 m along Z."""
     primitive(glb)["targets"] = [{"POSITION": glb.accessor(np.tile(row, (16, 1)))} for row in ([1, 0, 0], [0, 0, 1])]
     glb.json["meshes"][0] |= {} if mesh is None else {"weights": mesh}

@@ -1,6 +1,7 @@
 """Which parts are outlines of toon figures: shells around the others, wound inside out."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -51,7 +52,8 @@ def together(first: Part, second: Part) -> Part:
     count = len(first.positions)
     columns = {name: (getattr(first, name), getattr(second, name)) for name in ("positions", "uv", "joints", "weights")}
     columns |= {name: (getattr(first, name), getattr(second, name) + count) for name in ("faces", "uv_faces")}
-    return replace(first, **{name: np.concatenate(column) for name, column in columns.items()})
+    joined: dict[str, Any] = {name: np.concatenate(column) for name, column in columns.items()}
+    return replace(first, **joined)
 
 
 def kept(*parts: Part) -> tuple[list[str], tuple[str, ...]]:

@@ -13,8 +13,11 @@ from mua.scene import Part, Scene, Skin
 def weighing(skin: int, joint: int, count: int) -> Part:
     """Vertices that hang on one joint of a skin."""
     source = part(group=skin, skin=skin)
-    own = {"positions": source.positions[:count], "joints": np.full((count, 1), joint), "weights": np.ones((count, 1))}
-    return replace(source, **own, faces=source.faces[:0], uv_faces=source.faces[:0])
+    none = source.faces[:0]
+    joints, weights = np.full((count, 1), joint), np.ones((count, 1))
+    return replace(
+        source, positions=source.positions[:count], joints=joints, weights=weights, faces=none, uv_faces=none
+    )
 
 
 def skins(second: Array, *parts: Part) -> Scene:

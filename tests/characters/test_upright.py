@@ -28,7 +28,7 @@ def whole(turn: Rotation, *, sitting: float = 0.0, bent: float = 0.0, rest: Rota
                 if hinge in skeleton.ancestors(joint):
                     lift = Rotation.from_euler(axis, degrees, degrees=True)
                     places[joint] = places[hinge] + lift.apply(places[joint] - places[hinge])
-    bound, rests = (np.stack([at(*t.apply(place), t) for place in places]) for t in (turn, rest or turn))
+    bound, rests = (np.stack([at(x, y, z, t) for x, y, z in t.apply(places)]) for t in (turn, rest or turn))
     count = len(places)
     skin = Skin(np.arange(count), np.linalg.inv(bound))
     joints = np.stack([np.arange(count), np.roll(np.arange(count), 1)], axis=1)

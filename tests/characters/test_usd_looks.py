@@ -37,6 +37,7 @@ def test_display_colour_of_points_reaches_the_corners(plain: Path) -> None:
 
     surfaces = read_surfaces(edited(plain, ramp))
     assert surfaces.corner_colors is not None
+    assert surfaces.corner_colors is not None
     np.testing.assert_allclose(surfaces.corner_colors[..., 0], corner_heights(surfaces) / 1.5, atol=1e-6)
     assert (surfaces.corner_colors[..., 1:] == 1).all()
     np.testing.assert_array_equal(surfaces.materials[0].image[0, 0], 255)
@@ -48,12 +49,14 @@ def test_display_colour_of_faces_fills_each_of_them(plain: Path) -> None:
         primvar.Set([Gf.Vec3f(face // 4 / 2, 1, 1) for face in range(12)])
 
     surfaces = read_surfaces(edited(plain, rows))
+    assert surfaces.corner_colors is not None
     expected = np.floor(corner_heights(surfaces).min(axis=1) / 0.5 + 1e-6) / 2
     np.testing.assert_allclose(surfaces.corner_colors[..., 0], np.repeat(expected[:, None], 3, axis=1), atol=1e-6)
 
 
 def test_display_opacity_becomes_opacity(plain: Path) -> None:
     surfaces = read_surfaces(edited(plain, lambda stage: body(stage).CreateDisplayOpacityPrimvar().Set([0.5])))
+    assert surfaces.corner_colors is not None
     assert (surfaces.corner_colors[..., 3] == 0.5).all()
 
 
@@ -98,6 +101,7 @@ def test_material_that_reads_colours_of_points_gets_them(plain: Path) -> None:
         paint.Set([Gf.Vec3f(0.25, 0.5, 1)] * 16)
 
     surfaces = read_surfaces(edited(plain, reader))
+    assert surfaces.corner_colors is not None
     np.testing.assert_allclose(surfaces.corner_colors[..., :3], np.broadcast_to([0.25, 0.5, 1], (24, 3, 3)))
     np.testing.assert_array_equal(surfaces.materials[0].image[0, 0], 255)
 

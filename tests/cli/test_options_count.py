@@ -20,7 +20,7 @@ import mua
 from mua.baking.options import read_order
 from mua.capture import Capture, CaptureClip, write_capture
 
-BAKE = {
+BAKE: dict[str, Any] = {
     "output": "b.muaavatar",
     "character": "figure.glb",
     "motion": ["walk.bvh"],
@@ -44,9 +44,11 @@ BAKE = {
     "device": "cpu",
     "work": "elsewhere",
 }
-TRAIN = {name: BAKE[name] for name in ("output", "preset", "recipe", "clips", "storage", "seed", "device", "work")}
+TRAIN: dict[str, Any] = {
+    name: BAKE[name] for name in ("output", "preset", "recipe", "clips", "storage", "seed", "device", "work")
+}
 TRAIN["stage"] = "bases"
-TEACH = {
+TEACH: dict[str, Any] = {
     "output": "other",
     "preset": "small",
     "steps": 7,
@@ -117,8 +119,9 @@ def test_an_option_of_a_training_changes_its_order(option: str, monkeypatch: pyt
     monkeypatch.setattr(
         importlib.import_module("mua.baking.distil"), "_distil", lambda _, order, __: orders.append(order)
     )
+    recording: Any = object()
     for options in ({}, {option: TRAIN[option]}):
-        mua.train(object(), **options)
+        mua.train(recording, **options)
     assert set(TRAIN) == set(defaults(mua.train))
     found = changed(*orders)
     assert found - {"work"} if option == "output" else len(found) == 1

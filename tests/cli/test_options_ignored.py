@@ -30,7 +30,17 @@ def test_a_test_fails_where_an_option_is_ignored(command: str, option: str, tmp_
     file, test = tests[option].split(".", 1)
     path = os.pathsep.join([str(TESTS / "ignored_option"), os.environ.get("PYTHONPATH", "")])
     environment = {**os.environ, "PYTHONPATH": path, "IGNORED_OPTION": f"{module}:{function}:{option}"}
-    line = [sys.executable, "-m", "pytest", "-c", TESTS.parent / "pyproject.toml", "-x", "-n0", "-p", "no:randomly"]
+    line = [
+        sys.executable,
+        "-m",
+        "pytest",
+        "-c",
+        str(TESTS.parent / "pyproject.toml"),
+        "-x",
+        "-n0",
+        "-p",
+        "no:randomly",
+    ]
     ended = subprocess.run(
         [*line, "-p", "no:cacheprovider", f"{next(TESTS.rglob(f'test_{file}.py'))}::{test}"],
         cwd=tmp_path, env=environment, capture_output=True, text=True, check=False,

@@ -3,6 +3,7 @@
 import json
 import subprocess
 from pathlib import Path
+from typing import Any
 
 import imageio_ffmpeg
 import numpy as np
@@ -42,7 +43,14 @@ def test_writes_an_image_of_the_size_and_background_asked_for(avatar_file: Path,
 
 
 def test_frames_and_angles_differ(avatar_file: Path, tmp_path: Path) -> None:
-    choices = [{}, {"frame": 5}, {"azimuth": 90.0}, {"elevation": 60.0}, {"zoom": 3.0}, {"look_at": "middle"}]
+    choices: list[dict[str, Any]] = [
+        {},
+        {"frame": 5},
+        {"azimuth": 90.0},
+        {"elevation": 60.0},
+        {"zoom": 3.0},
+        {"look_at": "middle"},
+    ]
     for i, choice in enumerate(choices):
         view([avatar_file], output=tmp_path / f"{i}.png", size="32", clip="wave", **choice)
     images = {pixels(tmp_path / f"{i}.png").tobytes() for i in range(len(choices))}
@@ -53,7 +61,7 @@ def test_frames_and_angles_differ(avatar_file: Path, tmp_path: Path) -> None:
 def test_names_the_file_that_it_has_written(
     avatar_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str, written: str
 ) -> None:
-    frames = {"frames": "0:2"} if name == "v.gif" else {}
+    frames: dict[str, Any] = {"frames": "0:2"} if name == "v.gif" else {}
     view([avatar_file], output=tmp_path / name, size="40x60", **frames)
     assert capsys.readouterr().out.startswith(f"{tmp_path}/{written}")
 
@@ -83,7 +91,7 @@ def test_a_transparent_video_is_clear_about_the_figure_alone(avatar_file: Path, 
 def test_a_turntable_shows_one_frame_from_all_sides_and_repeats_without_a_seam(
     avatar_file: Path, tmp_path: Path
 ) -> None:
-    chosen = {"size": "48", "frame": 3, "orbit": 360.0}
+    chosen: dict[str, Any] = {"size": "48", "frame": 3, "orbit": 360.0}
     view([avatar_file], output=tmp_path / "v.webm", turntable=True, **chosen)
     pictures = video(tmp_path / "v.webm", side=48).astype(float)
     assert len(pictures) == 30  # a second
@@ -137,7 +145,7 @@ def test_a_video_without_frames_named_holds_the_whole_clip(avatar_file: Path, tm
 
 
 def test_the_camera_orbits_and_follows(avatar_file: Path, tmp_path: Path) -> None:
-    choices = [{}, {"orbit": 90.0}, {"follow": True}]
+    choices: list[dict[str, Any]] = [{}, {"orbit": 90.0}, {"follow": True}]
     for i, choice in enumerate(choices):
         view([avatar_file], output=tmp_path / f"{i}.mp4", size="32", **choice)
     assert len({video(tmp_path / f"{i}.mp4", side=32)[-1].tobytes() for i in range(len(choices))}) == len(choices)
@@ -149,7 +157,7 @@ def test_motion_of_another_file_moves_the_avatar(avatar_file: Path, tmp_path: Pa
     mapping = tmp_path / "joints.json"
     mapping.write_text(json.dumps({"root": "hips", "middle": "spine"}))
     for frame in (0, 2):
-        chosen = {"motion": motion, "mapping": mapping, "frame": frame}
+        chosen: dict[str, Any] = {"motion": motion, "mapping": mapping, "frame": frame}
         view([avatar_file], output=tmp_path / f"{frame}.png", size="32", **chosen)
     assert (pixels(tmp_path / "0.png") != pixels(tmp_path / "2.png")).any()
     with pytest.raises(InputError, match=r"wave\.bvh"):
@@ -171,7 +179,7 @@ def test_motion_of_another_file_moves_the_avatar(avatar_file: Path, tmp_path: Pa
     ],
 )
 def test_refuses_with_a_sentence_and_writes_nothing(
-    avatar_file: Path, tmp_path: Path, name: str, choice: dict[str, str | int], sentence: str
+    avatar_file: Path, tmp_path: Path, name: str, choice: dict[str, Any], sentence: str
 ) -> None:
     with pytest.raises(InputError, match=sentence):
         view([avatar_file], output=tmp_path / name, **choice)

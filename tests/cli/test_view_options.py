@@ -2,6 +2,7 @@
 
 import inspect
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -10,7 +11,9 @@ from mua.cli.view_options import Asked, look_of
 from mua.errors import InputError
 
 NOWHERE = Path("nowhere.muaavatar")  # an option is refused although there is no such file
-VALUES = {  # one of every option that says what is seen, and where it ends up in the Look of window and file
+VALUES: dict[
+    str, Any
+] = {  # one of every option that says what is seen, and where it ends up in the Look of window and file
     "size": "300x200",
     "azimuth": 90.0,
     "elevation": 10.0,
@@ -29,7 +32,8 @@ VALUES = {  # one of every option that says what is seen, and where it ends up i
 @pytest.mark.parametrize("option", VALUES)
 def test_an_option_changes_what_window_and_file_show(option: str, output: Path | None) -> None:
     value = False if (option, output) == ("follow", None) else VALUES[option]
-    assert look_of(Asked(**{option: value}), output) != look_of(Asked(), output)
+    choice: dict[str, Any] = {option: value}
+    assert look_of(Asked(**choice), output) != look_of(Asked(), output)
 
 
 def test_no_option_is_forgotten() -> None:
@@ -73,7 +77,7 @@ def test_no_option_is_forgotten() -> None:
         ("v.png", {"motion": Path("nowhere.bvh")}, "nowhere.muaavatar: there is no such file"),
     ],
 )
-def test_refuses_before_anything_is_loaded(output: str | None, choice: dict[str, object], sentence: str) -> None:
+def test_refuses_before_anything_is_loaded(output: str | None, choice: dict[str, Any], sentence: str) -> None:
     with pytest.raises(InputError) as refused:
         view([NOWHERE], output=None if output is None else Path(output), **choice)
     assert sentence in str(refused.value)

@@ -68,7 +68,7 @@ def test_what_does_not_vary_along_an_axis_is_pooled_to_itself(smooth_frames: Tra
 def test_convolutions_start_from_he_and_their_decoders_from_nothing(smooth_frames: TrainingFrames) -> None:
     network = Convolutions(5, smooth_frames.sizes)
     start_convolutions(network, torch.Generator().manual_seed(0))
-    for layer in network.features[::2]:
+    for layer in network.features[::2]:  # type: ignore[attr-defined]
         assert isinstance(layer, torch.nn.Conv2d)
         drawn = layer.weight.detach()
         assert float(drawn.std()) == pytest.approx((2 / drawn[0].numel()) ** 0.5, rel=0.1)

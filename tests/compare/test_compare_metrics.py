@@ -162,7 +162,7 @@ def weights(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         assert (net, pretrained) == ("alexnet", False)  # nothing is downloaded
         pool, convs = nn.MaxPool2d(3, 2), [nn.Conv2d(i, o, k, s, p) for i, o, k, s, p in ALEXNET]
         after = [[nn.ReLU(), pool], [nn.ReLU(), pool], [nn.ReLU()], [nn.ReLU()], [nn.ReLU(), pool]]
-        return nn.Sequential(*(m for conv, rest in zip(convs, after, strict=True) for m in (conv, *rest)))
+        return nn.Sequential(*(m for conv, rest in zip(convs, after, strict=True) for m in (conv, *rest)))  # type: ignore[misc]
 
     monkeypatch.setattr(perceptual, "_get_tv_model_features", layers)
     state = {}
@@ -186,7 +186,7 @@ def by_hand(image: Array, truth: Array, state: dict[str, torch.Tensor], net: Lpi
         x = [functional.relu(functional.conv2d(m, weight, bias, stride, pad)) for m in x]
         unit = [m / torch.sqrt(m.square().sum(1, keepdim=True) + 1e-8) for m in x]
         linear = net._net.lins[layer].model[-1].weight
-        total += float(((unit[0] - unit[1]).square() * linear.reshape(1, -1, 1, 1)).sum(1).mean())
+        total += float(((unit[0] - unit[1]).square() * linear.reshape(1, -1, 1, 1)).sum(1).mean())  # type: ignore[operator]
     return 1000 * total
 
 

@@ -125,7 +125,7 @@ def test_a_given_texture_is_drawn_as_the_player_draws_it(
 def test_a_mesh_of_ones_own_is_drawn(studio: Studio, frames: list[WholeFrame]) -> None:
     frame = frames[0]
     (as_recorded, _), (same, _) = studio.draw(frame, frame.texture), studio.draw(frame, frame.texture, mesh=frame.mesh)
-    (moved, _) = studio.draw(frame, frame.texture, mesh=frame.mesh + np.float32([0, 0.2, 0]))
+    (moved, _) = studio.draw(frame, frame.texture, mesh=frame.mesh + np.array([0, 0.2, 0], np.float32))
     np.testing.assert_array_equal(same, as_recorded)
     assert psnr(moved, as_recorded) < 30
 

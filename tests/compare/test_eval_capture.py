@@ -122,7 +122,7 @@ def test_the_command_compares_a_teacher_with_the_pictures(
 ) -> None:
     monkeypatch.setattr("mua.cli.filmed_evaluation.Lpips", lambda path: lambda image, truth: float(path.read_text()))
     (tmp_path / "weights").write_text("0.25")
-    given = ("--teacher", teacher, "--frames", "1", "--lpips-weights", tmp_path / "weights")
+    given: tuple[str | Path, ...] = ("--teacher", teacher, "--frames", "1", "--lpips-weights", tmp_path / "weights")
     given = (*given, "--images", tmp_path / "images")
     ended = command("eval", capture, *given, "-o", tmp_path / "evaluation")
     assert ended.status == 0, ended

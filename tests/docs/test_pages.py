@@ -37,7 +37,8 @@ PAGES = {page.relative_to(ROOT).as_posix(): page for page in _pages()}
 @cache
 def anchors(page: Path) -> set[str]:
     """What headings of a page are called in addresses, as GitHub makes them."""
-    text, seen, found = re.sub(r"^```.*?^```", "", page.read_text(), flags=re.DOTALL | re.MULTILINE), Counter(), set()
+    text = re.sub(r"^```.*?^```", "", page.read_text(), flags=re.DOTALL | re.MULTILINE)
+    seen, found = Counter[str](), set()
     for heading in re.findall(r"^#+ (.+?)\s*$", text, re.MULTILINE):
         plain = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", heading).lower()
         slug = re.sub(r"[^\w\- ]", "", plain).replace(" ", "-")

@@ -68,7 +68,12 @@ def test_a_bake_is_ordered_as_shown(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     Path("walks/walk_07.bvh").touch()
     given: list[Order] = []
     errors = {"training": SimpleNamespace(explained=lambda attribute: {"SH": 0.9}[attribute])}
-    monkeypatch.setattr(pipeline, "bake", lambda order, _: given.append(order) or SimpleNamespace(errors=errors))
+
+    def bake(order: Order, _: object) -> SimpleNamespace:
+        given.append(order)
+        return SimpleNamespace(errors=errors)
+
+    monkeypatch.setattr(pipeline, "bake", bake)
     exec(BAKING, {})
     (order,) = given
     assert (order.motions, order.hold_out, order.detail) == ((Path("walks"),), ("walk_07",), {"head": 3})

@@ -127,7 +127,7 @@ def test_the_mesh_at_rest_is_the_template_and_then_follows_its_joints(
 
 def test_of_eight_joints_the_four_largest_count(stored: mua.Avatar, tmp_path: Path) -> None:
     mesh = skinned_mesh(stored, stored.decode("wave", 0))
-    eight = np.tile(np.float32([0.3, 0.2, 0.2, 0.1, 0.05, 0.05, 0.05, 0.05]), (len(mesh.vertices), 1))
+    eight = np.tile(np.array([0.3, 0.2, 0.2, 0.1, 0.05, 0.05, 0.05, 0.05], np.float32), (len(mesh.vertices), 1))
     eight[0] = [1, 0, 0, 0, 0, 0, 0, 0]
     many = replace(mesh, weights=eight, joints=np.tile([2, 1, 1, 1, 1, 1, 1, 1], (len(eight), 1)))
     (tmp_path / "a.glb").write_bytes(character_glb(ExportFrames(stored, stored.clips[0], range(1)), many))
@@ -186,7 +186,7 @@ def test_trimesh_reads_the_detailed_geometry_with_its_colours(
     command: Commands, stored: mua.Avatar, avatar_file: Path, tmp_path: Path
 ) -> None:
     path = exported(command, avatar_file, tmp_path, "geometry", "--frames", "4")
-    (mesh,) = trimesh.load(path, process=False).geometry.values()
+    (mesh,) = trimesh.load_scene(path, process=False).geometry.values()
     splats = stored.decode("wave", 4)
     np.testing.assert_array_equal(mesh.vertices, splats.centres)
     np.testing.assert_array_equal(mesh.faces, surface_mesh(stored).triangles)
@@ -220,7 +220,7 @@ def test_splats_by_the_extension_are_those_of_the_frame(
     assert primitive["extensions"][own]["kernel"] == "ellipse"
     assert primitive["extensions"][own]["colorSpace"] == "srgb_rec709_display"
     assert own in found.json["extensionsUsed"]
-    (points,) = trimesh.load(path).geometry.values()
+    (points,) = trimesh.load_scene(path).geometry.values()
     np.testing.assert_array_equal(points.vertices, posed.centres)
 
 

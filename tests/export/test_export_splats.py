@@ -4,6 +4,7 @@ import gzip
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -43,8 +44,9 @@ def exported() -> WorldSplats:
 
 def as_read(splats: WorldSplats) -> Read:
     """The splats as a perfect reader would have them."""
-    double = [a.astype(float) for a in (splats.centres, splats.log_scales, splats.rotations, splats.logits)]
-    return Read(*double, splats.sh[:, :3].astype(float), splats.sh[:, 3:].reshape(-1, 3, 3).astype(float))
+    constant, linear = splats.sh[:, :3], splats.sh[:, 3:].reshape(-1, 3, 3)
+    fields = (splats.centres, splats.log_scales, splats.rotations, splats.logits, constant, linear)
+    return Read(*(a.astype(float) for a in fields))
 
 
 def written(tmp_path: Path, content: bytes) -> Path:
@@ -121,7 +123,7 @@ def test_another_renderer_draws_the_same_picture(tmp_path: Path, azimuth: float,
     bounds = np.stack([splats.centres.min(axis=0), splats.centres.max(axis=0)])
     camera = orbit(bounds, screen=(48, 64), azimuth=azimuth, elevation=0.2)
     found = read_ply(written(tmp_path, ply_bytes(exported())))
-    kernel = {"dilation": PIXEL_VARIANCE, "profile": splat_viewer.window} if ours else {}
+    kernel: dict[str, Any] = {"dilation": PIXEL_VARIANCE, "profile": splat_viewer.window} if ours else {}
     picture, expected = splat_viewer.draw(found, camera, **kernel), render_premultiplied(splats, camera)
     assert expected[..., 3].mean() > 0.1
     assert splat_viewer.decibels(picture, expected) > least
@@ -152,7 +154,7 @@ def test_any_rotation_comes_back(tmp_path: Path, kind: str, step: float) -> None
 def test_a_spz_keeps_the_place_just_below_a_power_of_two(tmp_path: Path) -> None:
     """Where rounding reaches the next bit."""
     edge = np.nextafter(np.float32(8), np.float32(0))
-    far = replace(exported(), centres=np.tile(np.float32([edge, -edge, 0]), (len(exported()), 1)))
+    far = replace(exported(), centres=np.tile(np.array([edge, -edge, 0], np.float32), (len(exported()), 1)))
     found = read_by_gaussforge(written(tmp_path, spz_bytes(far)), "spz")
     np.testing.assert_allclose(found.centres, far.centres, atol=2.0**-18)
 
@@ -179,7 +181,7 @@ def test_scales_are_held_where_players_hold_them(tmp_path: Path) -> None:
 
 
 def test_a_spz_far_from_the_origin_keeps_its_centres(tmp_path: Path) -> None:
-    far = replace(exported(), centres=exported().centres + np.float32([0, 0, 1000]))
+    far = replace(exported(), centres=exported().centres + np.array([0, 0, 1000], np.float32))
     found = read_by_gaussforge(written(tmp_path, spz_bytes(far)), "spz")
     np.testing.assert_allclose(found.centres, far.centres, atol=2.0**-12)
 
@@ -199,7 +201,7 @@ def test_a_compressed_ply_gives_another_reader_the_same_within_its_steps(tmp_pat
 
 
 def test_a_flat_chunk_has_no_range(tmp_path: Path) -> None:
-    flat = replace(exported(), centres=exported().centres * np.float32([1, 1, 0]))
+    flat = replace(exported(), centres=exported().centres * np.array([1, 1, 0], np.float32))
     found = read_by_gaussforge(written(tmp_path, compressed_ply_bytes(flat)), "compressed.ply")
     np.testing.assert_array_equal(found.centres[:, 2], 0)
 
@@ -214,7 +216,7 @@ def test_a_chunk_that_is_all_but_flat_is_flat() -> None:
 
 
 def test_a_narrow_chunk_keeps_its_range(tmp_path: Path) -> None:
-    narrow = replace(exported(), centres=exported().centres * np.float32([1, 1, 1e-3]))
+    narrow = replace(exported(), centres=exported().centres * np.array([1, 1, 1e-3], np.float32))
     found = read_by_gaussforge(written(tmp_path, compressed_ply_bytes(narrow)), "compressed.ply")
     expected = narrow.centres[morton_order(narrow.centres)]
     np.testing.assert_allclose(found.centres[:, 2], expected[:, 2], atol=np.ptp(expected[:, 2]) / 1023)

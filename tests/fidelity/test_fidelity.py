@@ -202,7 +202,7 @@ def lopsided(tmp_path: Path) -> Character:
     """The column with one upper corner drawn out, so that no two sides look alike; a clip turns it and stays."""
     glb = gltf_files.body()
     points = gltf_files.POINTS.copy()
-    points[np.ix_((points > [0, 1.2, 0]).all(axis=1), [0, 2])] = FIN
+    points[np.ix_((points > [0, 1.2, 0]).all(axis=1), np.array([0, 2]))] = FIN
     gltf_files.primitive(glb)["attributes"]["POSITION"] = glb.accessor(points)
     turn = np.array([[0, np.sin(TURNED / 2), 0, np.cos(TURNED / 2)]] * 2)
     sampler = {"input": glb.accessor(np.array([0.0, 1.0])), "output": glb.accessor(turn)}

@@ -55,7 +55,7 @@ def test_run_returns_what_the_kernel_wrote(device: Device, shader: Path, count: 
 
 @pytest.mark.parametrize("dtype", [np.uint8, np.int8, np.float16, np.uint32, np.int32, np.float32, np.bool_])
 @pytest.mark.parametrize("count", [0, 1, 5, 7, 16, 101])
-def test_buffers_keep_bytes(device: Device, count: int, dtype: type) -> None:
+def test_buffers_keep_bytes(device: Device, count: int, dtype: Any) -> None:
     array = np.arange(count).astype(dtype)
     buffer = device.buffer(array, name="bytes")
     assert buffer.size == -(-array.nbytes // 4) * 4

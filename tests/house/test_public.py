@@ -58,7 +58,8 @@ def test_a_clip_is_decoded_by_its_name_by_itself_and_by_its_window() -> None:
 
 
 def test_numpys_numbers_do_for_frames_and_names_for_element_types() -> None:
-    assert AVATAR.decode(WAVE.name, np.int64(2), dtype="float64").centres.dtype == np.float64
+    frame: Any = np.int64(2)
+    assert AVATAR.decode(WAVE.name, frame, dtype="float64").centres.dtype == np.float64
 
 
 @pytest.mark.parametrize("rate", [10.0, 24.0, 60.0])

@@ -125,7 +125,8 @@ def test_places_joints_and_end_sites_like_slow_kinematics(tmp_path: Path) -> Non
 def test_the_rest_pose_is_that_of_the_offsets(tmp_path: Path) -> None:
     skeleton = read_bvh(write(tmp_path, PERSON), scale=1.0).skeleton
     _, at = skeleton.world(skeleton.bind_rotations, skeleton.bind_translations)
-    np.testing.assert_allclose(at, [[0, 0, 0], [1, -9, 0], [1, -9, 2], [0, 7, 0.5], [0, 9, 0.5]], atol=BOUND)
+    expected = np.array([[0, 0, 0], [1, -9, 0], [1, -9, 2], [0, 7, 0.5], [0, 9, 0.5]])
+    np.testing.assert_allclose(at, expected, atol=BOUND)
 
 
 @pytest.mark.parametrize("name", ["cmu/02_01.bvh", "dab.bvh"])

@@ -56,7 +56,7 @@ def test_no_foot_jumps_where_it_begins_or_ends_to_stand() -> None:
     source, target = SourceMotion(person(), walk(person())), long_thighs()
     fastest = []
     for feet in ("keep", "plant"):
-        at = world(target, put_on(source, target, feet)[0])[1][:, target.names.index("LeftFoot")]  # type: ignore[arg-type]
+        at = world(target, put_on(source, target, feet)[0])[1][:, target.names.index("LeftFoot")]
         fastest.append(np.linalg.norm(np.diff(at, axis=0), axis=-1).max())
     assert fastest[1] < 1.5 * fastest[0]
 

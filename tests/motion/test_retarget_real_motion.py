@@ -27,8 +27,8 @@ def test_amass_rest_pose_stands_upright_in_the_targets_place(joints: int) -> Non
         assert angle(bone(target, found, begin, end), bone(smpl, standing, *limb)) < ANGLE_BOUND
     turned, at = world(target, found)
     _, bind_at = target.world(target.bind_rotations, target.bind_translations)
-    joints = [target.names.index(name) for name in ("Hips", "Head", "LeftFoot", "RightToeBase")]
-    assert np.abs(at[0, joints, 1] - bind_at[joints, 1]).max() < 0.02
+    placed = [target.names.index(name) for name in ("Hips", "Head", "LeftFoot", "RightToeBase")]
+    assert np.abs(at[0, placed, 1] - bind_at[placed, 1]).max() < 0.02
     assert_turned_as_at_rest(target, turned[0], "Hips", "Head")
 
 

@@ -38,7 +38,7 @@ def _word(content: bytes, at: int) -> int:
     return int(struct.unpack_from("<I", content, at)[0])
 
 
-def _table(content: bytes, start: int, name: str) -> Tree:
+def _table(content: bytes, start: int, name: str) -> Any:
     vtable = start - struct.unpack_from("<i", content, start)[0]
     slots = (struct.unpack_from("<H", content, vtable)[0] - 4) // 2
     found: Tree = {}

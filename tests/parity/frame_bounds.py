@@ -1,6 +1,7 @@
 """The order of a frame's dispatches, and how far a frame on the GPU may be from the reference."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -46,7 +47,7 @@ def part(avatar: Avatar, kept: slice) -> Avatar:
         triangles=texels.triangles[kept],
         barycentrics=texels.barycentrics[kept],
     )
-    branches = {
+    branches: dict[str, Any] = {
         name: replace(branch, static=branch.static[:, kept])
         for name, branch in (("geometry", avatar.geometry), ("appearance", avatar.appearance))
     }

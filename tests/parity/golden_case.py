@@ -36,7 +36,7 @@ class Case:
     name: str
     entry: str
     groups: tuple[int, int, int]
-    constants: Mapping[str, int | float | Array]
+    constants: Mapping[str, int | float | tuple[int, ...] | Array]
     buffers: Mapping[str, Array]  # as they are before the dispatch
     expected: tuple[Expected, ...]
 

@@ -13,7 +13,7 @@ from skinned_cases import (
 from splat_rounding import ULP
 from stored import STORAGES, groups, store
 
-from mua.asset.tensors import Storage
+from mua.asset.tensors import Element
 from mua.kernels.blend_subbands import blend_detail, blend_ll
 from mua.kernels.dq_skinning import blend_vertices
 from mua.kernels.inverse_dwt import (
@@ -45,7 +45,7 @@ def dq_skinning_cases() -> list[Case]:
     return [_vertices()]
 
 
-def _layer(storage: Storage, *, relu: int) -> Case:
+def _layer(storage: Element, *, relu: int) -> Case:
     raw_weight, raw_bias, x = layer(37, 29, np.float32)
     weight, bias = store(raw_weight, storage, rows=37), store(raw_bias, "f32")
     y = mlp_matmul(weight.values, bias.values, x.astype(float), relu=bool(relu))
@@ -60,7 +60,7 @@ def _layer(storage: Storage, *, relu: int) -> Case:
     )
 
 
-def _mesh(storage: Storage) -> Case:
+def _mesh(storage: Element) -> Case:
     raw_weight, raw_bias, x = layer(69, 11, np.float32)
     basis, mean = store(np.ascontiguousarray(raw_weight.T), storage, rows=11), store(raw_bias, storage)
     y = mlp_matmul(basis.values.T, mean.values, x.astype(float), relu=False)
@@ -75,7 +75,7 @@ def _mesh(storage: Storage) -> Case:
     )
 
 
-def _blend_ll(storage: Storage) -> Case:
+def _blend_ll(storage: Element) -> Case:
     channels, rank, size, offset = 3, 5, 9, 7
     rng = np.random.default_rng(1)
     mean = store(rng.normal(size=(channels, size, size)), storage, rows=channels)
@@ -100,7 +100,7 @@ def _blend_ll(storage: Storage) -> Case:
     )
 
 
-def _blend_detail(storage: Storage) -> Case:
+def _blend_detail(storage: Element) -> Case:
     channels, rank, size, offset = 2, 5, 27, 3
     rng = np.random.default_rng(2)
     mean = store(rng.normal(size=(3, channels, size, size)), storage, rows=3 * channels)
@@ -108,7 +108,7 @@ def _blend_detail(storage: Storage) -> Case:
     alpha = rng.normal(size=(channels, rank)).astype(np.float32)
     blended = blend_detail(mean.values, h.values, w.values, alpha.astype(float))
     blended = np.concatenate([blended, mean.values[..., -1:]], axis=-1)  # what fills up the last word
-    magnitude = blend_detail(*(np.abs(t.values) for t in (mean, h, w)), np.abs(alpha).astype(float)).max()
+    magnitude = blend_detail(np.abs(mean.values), np.abs(h.values), np.abs(w.values), np.abs(alpha).astype(float)).max()
     return Case(
         storage,
         "BlendDetail",
@@ -147,7 +147,7 @@ def _level(wavelet: str) -> Case:
     )
 
 
-def _texels_of(storage: Storage, *, levels: int) -> Case:
+def _texels_of(storage: Element, *, levels: int) -> Case:
     channels, rows, size, count, first = 5, 2, 5, 101, 2
     rng = np.random.default_rng(4)
     lo = taps("bior4.4")[0]

@@ -3,6 +3,7 @@
 import itertools
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from golden_case import UNWRITTEN, Case, Expected, halves
@@ -83,7 +84,7 @@ def _axis_bound(ellipses: Array, variance_bound: Array) -> Array:
 def _project(eyes: int) -> Case:
     scene = _scene(eyes)
     exact, before = scene.texels.splats, 8 * FIRST
-    constants = {
+    constants: dict[str, Any] = {
         name: np.float32(value) if name not in ("eyes", "texel_count") else value
         for name, value in scene.constants.items()
     }
@@ -158,8 +159,8 @@ def _sort_pass(
     blocks = -(-(visible if second_pass else count) // BLOCK)
     groups_of = (-(-count // BLOCK), 1, 1)  # of which the second pass leaves some idle
     owner = places // BLOCK
-    counts = np.stack([np.bincount(values[owner == block], minlength=256) for block in range(blocks)], axis=1)
-    before = np.cumsum(counts, axis=1) - counts
+    counts: Array = np.stack([np.bincount(values[owner == block], minlength=256) for block in range(blocks)], axis=1)
+    before: Array = np.cumsum(counts, axis=1) - counts
     counts, before, totals = (a.astype(np.uint32) for a in (counts, before, counts.sum(axis=1)))
     constants = {"second_pass": second_pass, "key_count": count}
     given = arguments if second_pass else np.full(5, UNWRITTEN)

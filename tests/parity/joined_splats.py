@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import fields, replace
+from typing import Any
 
 import numpy as np
 
@@ -25,5 +26,6 @@ def moved(frame: Splats, place: Array) -> Splats:
 def joined(frames: Sequence[Splats]) -> Splats:
     """Frames as one, the box around all of theirs."""
     names = [field.name for field in fields(Splats) if field.name not in ("normals", "outside")]  # none is one-sided
-    whole = Splats(**{name: np.concatenate([getattr(frame, name) for frame in frames]) for name in names})
+    values: dict[str, Any] = {name: np.concatenate([getattr(frame, name) for frame in frames]) for name in names}
+    whole = Splats(**values)
     return replace(whole, bounds=box_of(whole.bounds))

@@ -58,9 +58,17 @@ class Texels:
         a, b, c = (self.mesh[self.faces[self.triangles, corner]].astype(float) for corner in range(3))
         normals = rotation.rotate(texel_dq[:, :4], np.cross(b - a, c - a)) * self.one_sided[:, None]
         return Splats(
-            **{"canonical": self.mesh, "mesh": self.mesh, "texture": texture, "centres": centres},
-            **{"rotations": rotations, "scales": scales, "opacities": opacities},
-            **{"sh": texture[:, 11:], "texel_dq": texel_dq, "bounds": box_of(centres), "normals": normals},
+            canonical=self.mesh,
+            mesh=self.mesh,
+            texture=texture,
+            centres=centres,
+            rotations=rotations,
+            scales=scales,
+            opacities=opacities,
+            sh=texture[:, 11:],
+            texel_dq=texel_dq,
+            bounds=box_of(centres),
+            normals=normals,
         )
 
     def kept(self, chosen: Array) -> "Texels":

@@ -3,10 +3,10 @@
 from typing import NamedTuple
 
 from mua.arrays import Array
-from mua.asset.tensors import Storage, pack, reals
+from mua.asset.tensors import Element, pack, reals
 from mua.gpu.stored import Layout, upload_words
 
-STORAGES: tuple[Storage, ...] = ("f32", "f16", "i8")
+STORAGES: tuple[Element, ...] = ("f32", "f16", "i8")
 
 
 class Stored(NamedTuple):
@@ -15,7 +15,7 @@ class Stored(NamedTuple):
     values: Array  # float64, exactly what the words stand for
 
 
-def store(values: Array, storage: Storage, *, rows: int = 1) -> Stored:
+def store(values: Array, storage: Element, *, rows: int = 1) -> Stored:
     """Pack `values`; i8 has one scale for each of `rows` equal parts."""
     tensor = pack(values, storage, rows=max(rows, 1))
     return Stored(*upload_words(tensor), reals(tensor, "tensor", values.shape).astype(float))

@@ -1,5 +1,7 @@
 """The reference against the paper's sums, written out term by term; the shader against the reference."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from dispatch import run
@@ -7,7 +9,7 @@ from packed_splats import assert_halves
 from stored import STORAGES, groups, store
 
 from mua.arrays import Array
-from mua.asset.tensors import Storage
+from mua.asset.tensors import Element
 from mua.gpu import Device
 from mua.kernels.blend_subbands import blend_detail, blend_ll
 
@@ -22,7 +24,7 @@ UNTOUCHED = np.float16(-7)
 
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
 @pytest.mark.parametrize(("channels", "rank", "side"), SIZES)
-def test_ll_is_the_mean_and_a_weighted_sum_of_the_basis(channels: int, rank: int, side: int, dtype: type) -> None:
+def test_ll_is_the_mean_and_a_weighted_sum_of_the_basis(channels: int, rank: int, side: int, dtype: Any) -> None:
     rng = np.random.default_rng(rank)
     mean = rng.normal(size=(channels, side, side)).astype(dtype)
     basis = rng.normal(size=(channels, rank, side, side)).astype(dtype)
@@ -41,7 +43,7 @@ def test_ll_is_the_mean_and_a_weighted_sum_of_the_basis(channels: int, rank: int
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
 @pytest.mark.parametrize(("channels", "rank", "side"), SIZES)
 def test_detail_is_the_mean_and_a_weighted_sum_of_outer_products(
-    channels: int, rank: int, side: int, dtype: type
+    channels: int, rank: int, side: int, dtype: Any
 ) -> None:
     rng = np.random.default_rng(rank)
     mean = rng.normal(size=(3, channels, side, side)).astype(dtype)
@@ -65,7 +67,7 @@ def buffered(alpha: Array) -> Array:
 
 @pytest.mark.parametrize("storage", STORAGES)
 @pytest.mark.parametrize(("channels", "rank", "side"), SHADER_SIZES + PAPER_LL)
-def test_ll_shader_equals_the_reference(device: Device, channels: int, rank: int, side: int, storage: Storage) -> None:
+def test_ll_shader_equals_the_reference(device: Device, channels: int, rank: int, side: int, storage: Element) -> None:
     rng = np.random.default_rng(side)
     mean = store(rng.normal(size=(channels, side, side)), storage, rows=channels)
     basis = store(rng.normal(size=(channels, rank, side, side)), storage, rows=channels * rank)
@@ -98,7 +100,7 @@ def test_ll_shader_equals_the_reference(device: Device, channels: int, rank: int
 @pytest.mark.parametrize("storage", STORAGES)
 @pytest.mark.parametrize(("channels", "rank", "side"), SHADER_SIZES + PAPER_DETAILS)
 def test_detail_shader_equals_the_reference(
-    device: Device, channels: int, rank: int, side: int, storage: Storage
+    device: Device, channels: int, rank: int, side: int, storage: Element
 ) -> None:
     rng = np.random.default_rng(side)
     mean = store(rng.normal(size=(3, channels, side, side)), storage, rows=3 * channels)
@@ -126,7 +128,7 @@ def test_detail_shader_equals_the_reference(
     )["blended"]
     found, beyond = blended[:-1, :, :side].reshape(mean.values.shape), blended[-1]
     expected = blend_detail(mean.values, h.values, w.values, alpha.astype(float))
-    magnitude = blend_detail(*(np.abs(t.values) for t in (mean, h, w)), np.abs(alpha).astype(float))
+    magnitude = blend_detail(np.abs(mean.values), np.abs(h.values), np.abs(w.values), np.abs(alpha).astype(float))
     rounding_bound = (rank + 3) * np.finfo(np.float32).eps * magnitude
     assert_halves(found, expected, rounding_bound)
     assert np.all(beyond == UNTOUCHED)

@@ -1,5 +1,7 @@
 """Skinning against OpenUSD's, activations against scipy, the packed splat against numpy's own half floats."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from dispatch import run
@@ -23,7 +25,7 @@ REACH = 2.0  # metres; no point or translation in these tests lies farther out
 BLEND_OPERATIONS = 64  # roundings on the way of one coordinate: 8 terms of 3, a norm, two products, two sums
 
 
-def position_bound(dtype: type) -> float:
+def position_bound(dtype: Any) -> float:
     return float(BLEND_OPERATIONS * np.finfo(dtype).eps * REACH)
 
 
@@ -47,7 +49,7 @@ def usd_skinned(joints: Array, indices: Array, weights: Array, points: Array) ->
 
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
 @pytest.mark.parametrize("count", COUNTS[1:])
-def test_vertices_move_as_in_usd(count: int, dtype: type) -> None:
+def test_vertices_move_as_in_usd(count: int, dtype: Any) -> None:
     rng = np.random.default_rng(count)
     joints = random_joints(rng)
     indices, weights = random_influences(rng, count)
@@ -72,7 +74,7 @@ def test_a_joint_and_its_negative_blend_alike() -> None:
 
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
 @pytest.mark.parametrize("count", COUNTS)
-def test_texels_blend_their_three_vertices_as_usd_would(count: int, dtype: type) -> None:
+def test_texels_blend_their_three_vertices_as_usd_would(count: int, dtype: Any) -> None:
     rng = np.random.default_rng(count)
     vertex_dq = random_joints(rng, 6) * rng.choice([-1.0, 1.0], (6, 1))
     faces = np.array([[0, 1, 2], [2, 3, 4], [5, 3, 1]], np.int32)
@@ -114,7 +116,7 @@ def test_rotations_that_cancel_stay_finite() -> None:
 
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
 @pytest.mark.parametrize("count", COUNTS)
-def test_splats_are_activated_then_posed(count: int, dtype: type) -> None:
+def test_splats_are_activated_then_posed(count: int, dtype: Any) -> None:
     rng = np.random.default_rng(count)
     texel_dq = random_joints(rng, count).astype(dtype)
     mesh = rng.uniform(-0.5, 0.5, (4, 3)).astype(dtype)
@@ -126,7 +128,7 @@ def test_splats_are_activated_then_posed(count: int, dtype: type) -> None:
     texture[:, 10] *= 50  # far beyond where exp(-x) of a float32 overflows
     centres, rotations, scales, opacities = skin_splats(texel_dq, mesh, faces, triangles, barycentrics, texture)
     assert {a.dtype for a in (centres, rotations, scales, opacities)} == {np.dtype(dtype)}
-    eps = np.finfo(dtype).eps
+    eps = float(np.finfo(dtype).eps)
     np.testing.assert_allclose(scales, np.exp(texture[:, 7:10].astype(float)), rtol=16 * eps)
     np.testing.assert_allclose(opacities, expit(texture[:, 10].astype(float)), rtol=0, atol=4 * eps)
     if count == 0:
@@ -152,7 +154,7 @@ def test_scales_are_held_where_their_exponential_would_be_infinite() -> None:
 
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
 @pytest.mark.parametrize("count", COUNTS)
-def test_covariance_is_the_squared_axes(count: int, dtype: type) -> None:
+def test_covariance_is_the_squared_axes(count: int, dtype: Any) -> None:
     rng = np.random.default_rng(count)
     rotations = rotation.normalize(rng.normal(size=(count, 4))).astype(dtype)
     scales = np.exp(rng.uniform(-9, -3, (count, 3))).astype(dtype)
@@ -162,7 +164,7 @@ def test_covariance_is_the_squared_axes(count: int, dtype: type) -> None:
     if count:
         axes = Rotation.from_quat(rotations.astype(float), scalar_first=True).as_matrix()
         expected = np.einsum("nij,nj,nkj->nik", axes, scales.astype(float) ** 2, axes)[:, *np.triu_indices(3)]
-        bound = 32 * np.finfo(dtype).eps * scales.max(axis=1, keepdims=True) ** 2
+        bound = 32 * float(np.finfo(dtype).eps) * scales.max(axis=1, keepdims=True) ** 2
         assert np.all(np.abs(found - expected) <= bound)
 
 

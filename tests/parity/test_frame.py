@@ -124,6 +124,7 @@ def test_coarser_levels_agree_and_the_finest_comes_back(device: Device, tmp_path
         assert errors.color < COLOR_BOUND
         assert errors.opacity < OPACITY_BOUND
         assert errors.key <= errors.key_bound < MOST_KEYS
+        assert posed.exact.normals is not None
         away = facing(posed.exact.centres, posed.exact.normals, posed.cameras[0].view)
         np.testing.assert_array_equal(np.sort(posed.order), np.flatnonzero(away <= AWAY))
         assert posed.visible == len(posed.order)
@@ -240,7 +241,7 @@ def test_depth_is_keyed_over_the_references_box(device: Device, tmp_path: Path) 
     frame = opened(device, synthetic_avatar(), tmp_path)
     avatar = frame.avatars[0].avatar.avatar
     posed = PosedFrame(device, frame, avatar.clips[0], 3, eyes=1, screen=64)
-    np.testing.assert_allclose(frame.box(), posed.exact.bounds, rtol=0, atol=4 * np.finfo(np.float32).eps)
+    np.testing.assert_allclose(frame.box(), posed.exact.bounds, rtol=0, atol=4 * float(np.finfo(np.float32).eps))
 
 
 @pytest.mark.parametrize("count", [0, 1, 2])

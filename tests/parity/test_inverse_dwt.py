@@ -1,5 +1,7 @@
 """The reference against PyWavelets for every biorthogonal wavelet it has; the shader against the reference."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 import pywt
@@ -9,7 +11,7 @@ from packed_splats import assert_halves
 from stored import STORAGES, groups, store
 
 from mua.arrays import Array
-from mua.asset.tensors import Storage
+from mua.asset.tensors import Element
 from mua.gpu import Device
 from mua.kernels.inverse_dwt import (
     BATCH,
@@ -44,7 +46,7 @@ def rounding_bound(name: str, dtype: type, largest: float) -> float:
 
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
 @pytest.mark.parametrize("name", WAVELETS)
-def test_full_level_equals_pywt(name: str, dtype: type) -> None:
+def test_full_level_equals_pywt(name: str, dtype: Any) -> None:
     for side in SIDES:
         rng = np.random.default_rng(side)
         bands = rng.normal(size=(4, 2, side, side)).astype(dtype)
@@ -148,7 +150,7 @@ def test_tiles_hold_each_valid_texel_once_and_no_tile_is_empty() -> None:
     texels = np.sort(np.random.default_rng(0).permutation(size * size)[:90])
     tiles, rows = texel_tiles(texels, size)
     assert rows[..., 1].any(axis=1).all()
-    found = {}
+    found: dict[int, Any] = {}
     for tile, lines in zip(tiles, rows, strict=True):
         for line, (first, mask) in enumerate(lines):
             columns = [c for c in range(TILE) if mask >> c & 1]
@@ -260,7 +262,7 @@ def check_texels(
     levels: int,
     *,
     count: int,
-    storage: Storage = "f32",
+    storage: Element = "f32",
     first_row: int = 0,
     coarser: int = 0,
 ) -> None:
@@ -292,7 +294,7 @@ def check_texels(
     )["texel_channels"]
     written = slice(first_row, first_row + rows)
     halves = found[written].swapaxes(1, 2).reshape(BATCH * rows, count)
-    kept = {"texels": texels, "static_offset": static_offset.values, "coarser": coarser}
+    kept: dict[str, Any] = {"texels": texels, "static_offset": static_offset.values, "coarser": coarser}
     expected = upsample_texels(ll.astype(float), lo, levels, **kept)
     largest = np.abs(static_offset.values).max(initial=0)
     bound = upsampling_bound(filtered, np.abs(ll).max(initial=0), largest)
@@ -307,7 +309,7 @@ def check_texels(
     [(1, 1, 0, 1), (11, 5, 1, 13), (12, 7, 2, 0), (0, 3, 2, 4), (3, 24, 2, 5003), (5, 3, 3, 570)],
 )
 def test_texel_shader_equals_the_reference(
-    device: Device, channels: int, side: int, levels: int, count: int, storage: Storage
+    device: Device, channels: int, side: int, levels: int, count: int, storage: Element
 ) -> None:
     ll = np.random.default_rng(side).normal(size=(channels, side, side)).astype(np.float32)
     check_texels(device, ll, taps("bior4.4")[0], levels, count=count, storage=storage, first_row=2)

@@ -9,7 +9,7 @@ from layer_cases import layer, shader_bound
 from stored import STORAGES, Stored, groups, store
 
 from mua.arrays import Array
-from mua.asset.tensors import Storage
+from mua.asset.tensors import Element
 from mua.gpu import Device
 from mua.kernels.mlp_matmul import mlp_matmul
 
@@ -70,7 +70,7 @@ def shader_layer(
 
 @pytest.mark.parametrize("storage", STORAGES)
 @pytest.mark.parametrize("size", SIZES + PAPER_LAYERS)
-def test_shader_equals_the_reference(device: Device, size: tuple[int, int], storage: Storage) -> None:
+def test_shader_equals_the_reference(device: Device, size: tuple[int, int], storage: Element) -> None:
     raw_weight, raw_bias, x = layer(*size, np.float32)
     weight, bias = store(raw_weight, storage, rows=size[0]), store(raw_bias, "f32")
     for relu in (False, True):
@@ -81,7 +81,7 @@ def test_shader_equals_the_reference(device: Device, size: tuple[int, int], stor
 
 @pytest.mark.parametrize("storage", STORAGES)
 @pytest.mark.parametrize("size", [*SIZES, PAPER_MESH])
-def test_transposed_shader_equals_the_reference(device: Device, size: tuple[int, int], storage: Storage) -> None:
+def test_transposed_shader_equals_the_reference(device: Device, size: tuple[int, int], storage: Element) -> None:
     raw_weight, raw_bias, x = layer(*size, np.float32)
     basis, mean = store(np.ascontiguousarray(raw_weight.T), storage, rows=size[1]), store(raw_bias, storage)
     weight = basis.values.T

@@ -7,6 +7,7 @@ exact image in test_splat_draw_exact.py.
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
+from typing import Any
 
 import numpy as np
 import pytest
@@ -53,7 +54,7 @@ def test_equals_painting_back_to_front(count: int, screen: tuple[int, int]) -> N
     scene = random_scene(count, screen)
     image = splat_draw(*scene, screen=screen)
     assert image.shape == (screen[1], screen[0], 4)
-    np.testing.assert_allclose(image, painted(*scene, screen), rtol=0, atol=running_sum_bound(count, screen))
+    np.testing.assert_allclose(image, painted(*scene, screen=screen), rtol=0, atol=running_sum_bound(count, screen))
 
 
 def test_neither_bands_nor_chunks_show(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -72,12 +73,13 @@ def test_draws_nothing_of_what_this_eye_does_not_see() -> None:
 
 
 def test_float32_scene_draws_as_float64() -> None:
-    scene = [a.astype(np.float32) for a in random_scene(31, (13, 5))[:3]]
+    ellipses, colors, opacities = (a.astype(np.float32) for a in random_scene(31, (13, 5))[:3])
     order = np.arange(31)
-    exact = splat_draw(*(a.astype(float) for a in scene), order, screen=(13, 5))
+    exact = splat_draw(ellipses.astype(float), colors.astype(float), opacities.astype(float), order, screen=(13, 5))
+    found = splat_draw(ellipses, colors, opacities, order, screen=(13, 5))
     # Offsets of up to 20 pixels, in units of deviations of at least exp(-2), through 8 operations, then 31 blends.
     bound = 31 * 8 * 20 * np.exp(2) * np.finfo(np.float32).eps
-    np.testing.assert_allclose(splat_draw(*scene, order, screen=(13, 5)), exact, rtol=0, atol=bound)
+    np.testing.assert_allclose(found, exact, rtol=0, atol=bound)
 
 
 HELD_COLOR = np.array([[64, 192, 384]]) * 4 / COLOR_STEPS  # packed splats hold both exactly
@@ -108,7 +110,8 @@ def scene(eyes: int) -> tuple[Splats, tuple[Camera, ...]]:
     seen_by = cameras(BOX, eyes)
     small = random_frame(4000, BOX, deviations=(1e-4, 0.05))
     large = random_frame(40, BOX, deviations=(0.05, 0.22), seed=1)
-    frame = replace(small, **{name: np.concatenate([getattr(small, name), getattr(large, name)]) for name in FIELDS})
+    both: dict[str, Any] = {name: np.concatenate([getattr(small, name), getattr(large, name)]) for name in FIELDS}
+    frame = replace(small, **both)
     frame.centres[::9] = 2 * seen_by[0].position - frame.centres[::9]
     return frame, seen_by
 

@@ -70,6 +70,6 @@ def test_pixels_together_hold_about_all_of_a_gaussian() -> None:
 
 
 def test_the_window_keeps_float32_and_raises_no_warning_far_away() -> None:
-    found = pixel_share(np.float32([1e4, -1e4]), np.float32([0, 0, 0.6, 0.8, 0.01, 0.01]))
+    found = pixel_share(np.array([1e4, -1e4], np.float32), np.array([0, 0, 0.6, 0.8, 0.01, 0.01], np.float32))
     assert found.dtype == np.float32
     assert found == 0

@@ -88,11 +88,12 @@ def test_ellipse_is_the_covariance_through_the_derivative_of_the_projection(coun
 def test_float32_stays_near_float64(count: int) -> None:
     splats, keys, ellipses = project(*random_splats(count, np.float32), camera())
     wide = random_splats(count, np.float32)
-    exact_splats, exact_keys, exact = project(*(a.astype(float) for a in wide), camera())
+    centres, sigmas, opacities = (a.astype(float) for a in wide)
+    exact_splats, exact_keys, exact = project(centres, sigmas, opacities, camera())
     assert ellipses.dtype == np.float32
     assert keys.dtype == np.uint16
     np.testing.assert_array_equal(splats, exact_splats)
-    eps = np.finfo(np.float32).eps
+    eps = float(np.finfo(np.float32).eps)
     np.testing.assert_allclose(ellipses[0, :, :2], exact[0, :, :2], rtol=0, atol=32 * eps * max(SCREEN))
     largest = np.square(exact[0, :, 4]).max(initial=1)
     np.testing.assert_allclose(
@@ -224,9 +225,16 @@ def posed(centres: Array, scales: Array) -> Texels:
     count = len(centres)
     turn = np.tile([1.0, 0, 0, 0], (count, 1))
     frame = Splats(
-        **{"canonical": centres, "mesh": centres, "texture": centres, "centres": centres, "rotations": turn},
-        **{"scales": scales, "opacities": np.full(count, 0.99), "sh": np.zeros((count, 12))},
-        **{"texel_dq": np.concatenate([turn, np.zeros((count, 4))], axis=1), "bounds": BOX},
+        canonical=centres,
+        mesh=centres,
+        texture=centres,
+        centres=centres,
+        rotations=turn,
+        scales=scales,
+        opacities=np.full(count, 0.99),
+        sh=np.zeros((count, 12)),
+        texel_dq=np.concatenate([turn, np.zeros((count, 4))], axis=1),
+        bounds=BOX,
     )
     return texels_of(frame)
 
@@ -287,7 +295,7 @@ def test_hlsl_takes_the_first_of_equal_barycentrics_for_the_sign(device: Device)
 
 
 def test_hlsl_reaches_the_corners_of_triangles(device: Device) -> None:
-    corners, turn = 64 * np.eye(3, dtype=np.float32), np.tile(np.float32([1, 0, 0, 0]), (3, 1))
+    corners, turn = 64 * np.eye(3, dtype=np.float32), np.tile(np.array([1, 0, 0, 0], np.float32), (3, 1))
     vertex_dq = np.concatenate([turn, np.zeros((3, 4), np.float32)], axis=1)
     on_mesh = corners, FACES[:1], np.zeros(3, int), np.eye(3)
     texels = Texels(vertex_dq, *on_mesh, held(np.zeros((3, 23))), np.zeros(3, bool))

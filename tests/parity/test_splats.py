@@ -63,9 +63,9 @@ class Crowd:
         camera = orbit(frame_bounds(self.exact), screen=(256, 192), azimuth=0.7, elevation=0.3)
         self.cameras: tuple[Camera, ...] = (camera,) if eyes == 1 else stereo(camera, EYE_DISTANCE)
         commands = device.commands()
-        for avatar, index, place in zip(self.frame.avatars, INDICES, PLACES, strict=True):
-            clip, window = avatar.avatar.avatar.clips[0], avatar.avatar.avatar.encoding.frames(index)
-            avatar.decode(commands, clip.rotations[window], clip.translations[window], place)
+        for shown, index, place in zip(self.frame.avatars, INDICES, PLACES, strict=True):
+            clip, window = shown.avatar.avatar.clips[0], shown.avatar.avatar.encoding.frames(index)
+            shown.decode(commands, clip.rotations[window], clip.translations[window], place)
         self.frame.sort(commands, self.cameras)
         commands.submit()
         count = int(self.frame.arguments.read()[VISIBLE_WORD])
@@ -168,7 +168,7 @@ def past(camera: Camera) -> Camera:
 @pytest.mark.parametrize("eyes", [1, 2])
 def test_an_avatar_out_of_view_is_neither_projected_nor_sorted(device: Device, tmp_path: Path, eyes: int) -> None:
     crowd = Crowd(device, tmp_path, three(), eyes=eyes)
-    send_away(crowd, 0, 40 * crowd.cameras[0].view[2, :3])  # behind the camera
+    send_away(crowd, 0, (40 * crowd.cameras[0].view[2, :3]).tolist())  # behind the camera
     listed = sort_from(crowd, crowd.cameras)
     counts = [avatar.splat_count for avatar in crowd.frame.avatars]
     assert listed.projected == counts[1:]

@@ -25,7 +25,7 @@ def seen_from(texel: float) -> list[Camera]:
     return [Camera(view, projection, SCREEN)]
 
 
-def _pose() -> tuple[np.ndarray, np.ndarray]:  # type: ignore[type-arg]
+def _pose() -> tuple[np.ndarray, np.ndarray]:
     clip = synthetic_avatar().clips[0]
     return clip.rotations[0], clip.translations[0]
 

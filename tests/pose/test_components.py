@@ -118,7 +118,7 @@ def test_a_hold_begins_gently() -> None:
 def test_how_far_outside_is_the_share_that_is_taken_off() -> None:
     two = Components(Normalization(np.zeros(2), np.ones(2)), np.eye(2), np.array([[-1.0, -1], [1, 1]]), np.zeros(2))
     x, outside = read_components(two, np.array([[0.0, 0], [0.6, 0.8], [3, 4], [4, 0]]))
-    np.testing.assert_allclose(x, [[0, 0], [0.6, 0.8], [1, 1], [1, 0]])
+    np.testing.assert_allclose(x, np.array([[0, 0], [0.6, 0.8], [1, 1], [1, 0]]))
     np.testing.assert_allclose(outside, [0, 0, np.hypot(2, 3) / 5, 0.75])
 
 

@@ -32,7 +32,7 @@ def test_a_teacher_of_ones_own_is_recorded_trained_and_seen(tmp_path: Path) -> N
 
 def test_the_example_goes_on_where_it_was_killed(tmp_path: Path) -> None:
     example = load_example("own_teacher")
-    example.FRAMES = {"wave": 3, "both": 2}
+    example.FRAMES = {"wave": 3, "both": 2}  # type: ignore[attr-defined]
     example.record(tmp_path)
     example.FRAMES["bow"] = 2
     again = Recording(example.record(tmp_path))

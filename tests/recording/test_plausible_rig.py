@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -86,7 +87,7 @@ def bind_of(rig: Rig) -> tuple[Array, Array]:
     return rig.skeleton.bind_rotations, rig.skeleton.bind_translations
 
 
-def with_joints(rig: Rig, **change: Array) -> Rig:
+def with_joints(rig: Rig, **change: Any) -> Rig:
     return replace(rig, skeleton=replace(rig.skeleton, **change))
 
 

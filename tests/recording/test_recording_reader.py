@@ -51,7 +51,8 @@ def test_what_was_read_does_not_stay_in_memory(written: Path) -> None:
     recording.meshes(range(recording.count()))
     recording.mean_mesh()
     assert sum(1 for _ in recording.whole_frames())
-    resident, name = {}, ""
+    resident: dict[str, int] = {}
+    name = ""
     for line in Path("/proc/self/smaps").read_text().splitlines():
         if line.endswith(".npy"):
             name = Path(line.split(maxsplit=5)[5]).name

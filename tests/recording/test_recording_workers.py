@@ -143,7 +143,7 @@ def test_workers_end_with_a_killed_parent_and_the_next_run_ends_in_the_same_file
 def test_an_interrupt_ends_all_workers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     started: list[subprocess.Popen[bytes]] = []
 
-    class Popen(subprocess.Popen):  # type: ignore[type-arg]
+    class Popen(subprocess.Popen):
         def __init__(self, *arguments, **more) -> None:  # type: ignore[no-untyped-def]
             super().__init__(*arguments, **more)
             started.append(self)

@@ -78,5 +78,5 @@ def test_posed_splats_are_turned_back_to_canonical_space(texture: np.ndarray) ->
     posed[:, 3:7] = pose_splats(rig, mesh, texture=texture, pose=POSE).rotations
     back = EXAMPLE.canonical(rig, mesh, POSE, posed)
     np.testing.assert_allclose(back[:, :11], texture[:, :11], atol=1e-12)
-    brightness = [sh[:, 3:].reshape(-1, 3, 3) for sh in (posed[:, 11:], back[:, 11:])]
-    np.testing.assert_allclose(*(np.square(b).sum(axis=1) for b in brightness), rtol=1e-9)  # turned, not scaled
+    before, after = (np.square(sh[:, 3:].reshape(-1, 3, 3)).sum(axis=1) for sh in (posed[:, 11:], back[:, 11:]))
+    np.testing.assert_allclose(before, after, rtol=1e-9)  # turned, not scaled

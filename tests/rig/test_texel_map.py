@@ -11,9 +11,9 @@ from mua.rig.character import Mesh
 from mua.rig.texel_map import TexelMap, build_texel_map
 
 # A barycentric is a quotient of areas of a few float64 operations, then rounded to float32.
-BARYCENTRIC_BOUND = 4 * np.finfo(np.float32).eps
+BARYCENTRIC_BOUND = 4 * float(np.finfo(np.float32).eps)
 # uv * size and the centre lie below 64 texels; their rounding moves a point by a few ulps of that, twice per corner.
-POSITION_BOUND = 64 * 16 * np.finfo(np.float32).eps
+POSITION_BOUND = 64 * 16 * float(np.finfo(np.float32).eps)
 
 
 def flat_mesh(uv: Array, uv_faces: Array) -> Mesh:

@@ -74,8 +74,8 @@ def test_the_poster_shows_the_figure_on_nothing(command: Commands, avatar_file: 
     share(command, avatar_file, "-o", tmp_path / "out")
     with Image.open(tmp_path / "out" / "poster.png") as poster:
         assert (poster.mode, poster.size[1]) == ("RGBA", 960)
-        lowest, highest = poster.getchannel("A").getextrema()
-        assert (lowest, highest > 200) == (0, True)
+        alpha = np.asarray(poster.getchannel("A"))
+        assert (alpha.min(), alpha.max() > 200) == (0, True)
 
 
 def test_the_box_of_the_figure_fills_width_and_height_of_the_poster(avatar_file: Path) -> None:
@@ -348,7 +348,7 @@ def _assert_served(ran: "subprocess.Popen[str]", avatar_file: Path) -> None:
     element = Tags(ask(int(found[1]), "/")[2].decode()).one("mua-avatar")
     assert (element["src"], element["show"], element["stereo"]) == ("a.muaavatar", "splats,mesh", "")
     assert (element["clip"], element["elevation"], element["orbit"]) == ("wave", "10", "-5")
-    assert float(element["azimuth"]) == pytest.approx(30 + front(*opening(avatar_file, "wave")), abs=0.06)
+    assert float(element["azimuth"] or "nan") == pytest.approx(30 + front(*opening(avatar_file, "wave")), abs=0.06)
     ran.send_signal(signal.SIGINT)
     assert ran.wait(timeout=60) == 0
     assert ran.stderr.read() == ""

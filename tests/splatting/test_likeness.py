@@ -18,8 +18,8 @@ def pictures(height: int, width: int) -> tuple[torch.Tensor, torch.Tensor]:
 @pytest.mark.parametrize(("height", "width"), [(31, 40), (11, 17)])
 def test_ssim_is_that_of_torchmetrics(height: int, width: int) -> None:
     image, truth = pictures(height, width)
-    planes = [picture.permute(2, 0, 1)[None] for picture in (image, truth)]
-    wanted = structural_similarity_index_measure(*planes, data_range=1.0)
+    one, other = (picture.permute(2, 0, 1)[None] for picture in (image, truth))
+    wanted = structural_similarity_index_measure(one, other, data_range=1.0)
     assert isinstance(wanted, torch.Tensor)
     assert float(structural_similarity(image, truth)) == pytest.approx(float(wanted), abs=BOUND)
 

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import fields, replace
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import pytest
@@ -167,7 +168,8 @@ def test_gradients_reach_the_camera(name: str) -> None:
     eye, weights = Eye.of(camera(), tensors.centres), torch.randn(*SCREEN[::-1], 4, generator=rng, dtype=torch.float64)
 
     def loss(values: torch.Tensor) -> torch.Tensor:
-        return (weights * rasterise(tensors, replace(eye, **{name: values}), bounds)).sum()
+        change: dict[str, Any] = {name: values}
+        return (weights * rasterise(tensors, replace(eye, **change), bounds)).sum()
 
     along = torch.zeros(4, 4, dtype=torch.float64)
     rows = 3 if name == "view" else 2  # the others move the near plane only

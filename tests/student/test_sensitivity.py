@@ -5,6 +5,7 @@ from dataclasses import replace
 from itertools import count
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -128,7 +129,7 @@ def test_a_level_counts_for_the_mean_of_its_bands_and_of_all_pictures(
 def test_clips_that_are_held_out_are_not_looked_at(smooth_recording: Recording, tmp_path: Path) -> None:
     """Wherever they stand among the others."""
     before = copy(smooth_recording)
-    before.clips = sorted(smooth_recording.clips, key=lambda clip: not clip.held_out)
+    before.clips = tuple(sorted(smooth_recording.clips, key=lambda clip: not clip.held_out))
     assert [clip.name for clip in before.clips] != [clip.name for clip in smooth_recording.clips]
     measured = [measure_sensitivities(one, 2, run(tmp_path)) for one in (smooth_recording, before)]
     for one, other in zip(*measured, strict=True):
@@ -161,7 +162,7 @@ def test_sensitivities_to_weighted_subbands_have_a_mean_square_of_one() -> None:
 
 
 def distilled(
-    recording: Recording, directory: Path, *, pictures: int, heard: Quiet | None = None, **sizes: Ranks
+    recording: Recording, directory: Path, *, pictures: int, heard: Quiet | None = None, **sizes: Any
 ) -> Student:
     settings = replace(quick(SETTINGS), pictures=pictures, **sizes)
     return distil(recording, settings, device=CPU, directory=directory, report=heard or Quiet())

@@ -73,10 +73,10 @@ def users_and_range() -> tuple[torch.Tensor, torch.Tensor, torch.Tensor]:
 
 
 def test_what_all_frames_have_in_common_and_what_the_users_show_besides_add_up() -> None:
-    x, targets, own = users_and_range()
-    new = torch.cat([x[own][:5] + 0.05, 2 * frames(90)[0][80:]])
-    found = fit_beyond(x, targets, own, beyond=10.0, generator=torch.Generator().manual_seed(1))(new)
-    x, targets, new, own = (part.double().numpy() for part in (x, targets, new, own))
+    frames_of, wanted, users = users_and_range()
+    asked = torch.cat([frames_of[users][:5] + 0.05, 2 * frames(90)[0][80:]])
+    found = fit_beyond(frames_of, wanted, users, beyond=10.0, generator=torch.Generator().manual_seed(1))(asked)
+    x, targets, new, own = (part.double().numpy() for part in (frames_of, wanted, asked, users))
     own = own > 0
 
     def spread(points: np.ndarray) -> float:

@@ -23,7 +23,7 @@ def variances(spreads: dict[str, float]) -> torch.Tensor:
 def test_weighted_channels_spread_alike_whatever_their_unit(part: slice) -> None:
     variance = variances(SPREADS)[part]
     weights = channel_weights(variance, part)
-    np.testing.assert_allclose(weights**2 * variance, np.ones(len(variance)), rtol=8 * np.finfo(np.float32).eps)
+    np.testing.assert_allclose(weights**2 * variance, np.ones(len(variance)), rtol=8 * float(np.finfo(np.float32).eps))
 
 
 def test_the_channels_of_an_attribute_share_the_weight_of_their_mean_variance() -> None:

@@ -180,10 +180,11 @@ def test_joint_targets_measure_the_weighted_texture() -> None:
     targets = joint_targets(branch, flat, weights, rank=9, generator=torch.Generator().manual_seed(0))
     zero = branch.synthesize(branch.split(torch.zeros(1, flat.shape[1])))
     bands = branch.synthesize(branch.split(flat))
-    energy = sum(
+    parts = (
         ((band - still) * weights[:, None, None]).double().square().flatten(1).sum(1)
         for band, still in zip(bands, zero, strict=True)
     )
+    energy = torch.stack(list(parts)).sum(0)
     # The ridge of the Gram matrices adds its share of energy, GRAM_RIDGE of the mean one.
     assert torch.allclose(targets.coordinates.double().square().sum(1), energy, rtol=1e-3)
     assert torch.allclose(targets.coordinates @ targets.expand, flat, atol=1e-2)

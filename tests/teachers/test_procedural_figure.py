@@ -19,6 +19,7 @@ FEW = 4  # steps of 1 / 255 by which a block's sum may differ where a value is r
 def kept() -> dict[str, Array]:
     """Enough of the figure that no part of it can change unseen."""
     figure = procedural_character()
+    assert figure.looseness is not None
     sides = [length // BLOCK for length in figure.base_color.shape[:2]]
     blocks = figure.base_color.astype(np.int64).reshape(sides[0], BLOCK, sides[1], BLOCK, -1).sum(axis=(1, 3))
     vertex, frame = slice(None, None, EVERY["vertex"]), slice(None, None, EVERY["frame"])

@@ -1,5 +1,7 @@
 """One-rings in blocks: every edge once, and the constraints against a plain loop over vertices."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 import warp as wp
@@ -55,8 +57,10 @@ def relaxed(vertices: Array, chosen: Array, edges: Array, even: Array) -> Array:
     lengths, shares, evenings = (
         blocks.by_edge(values, none=none) for values, none in zip(edges, (1, 0, 0), strict=True)
     )
-    whole = [wp.array(values.ravel(), dtype=int, device=DEVICE) for values in (blocks.vertices, blocks.starts, to)]
-    real = [wp.array(values.ravel(), dtype=float, device=DEVICE) for values in (lengths, shares, evenings)]
-    places = [wp.array(values.ravel(), dtype=float, device=DEVICE) for values in (even, vertices, vertices)]
+    whole: list[Any] = [
+        wp.array(values.ravel(), dtype=int, device=DEVICE) for values in (blocks.vertices, blocks.starts, to)
+    ]
+    real: list[Any] = [wp.array(values.ravel(), dtype=float, device=DEVICE) for values in (lengths, shares, evenings)]
+    places: list[Any] = [wp.array(values.ravel(), dtype=float, device=DEVICE) for values in (even, vertices, vertices)]
     wp.launch(relax, dim=len(blocks.vertices), inputs=[*whole, *real, 0.3, *places], device=DEVICE)
     return np.asarray(places[-1].numpy()).reshape(-1, 3)

@@ -222,9 +222,9 @@ def test_quaternions_are_unit_and_on_the_hemisphere_of_the_bind_pose(teacher: Si
 def test_surfels_lie_in_the_posed_surface(teacher: SimulatedTeacher) -> None:
     """Their z axes against normals from differences of neighbouring splats' centres."""
     rig = teacher.rig
-    grid = np.full(SIZE * SIZE, -1)
-    grid[rig.texels.texels] = np.arange(len(rig.texels.texels))
-    grid = grid.reshape(SIZE, SIZE)
+    flat = np.full(SIZE * SIZE, -1)
+    flat[rig.texels.texels] = np.arange(len(rig.texels.texels))
+    grid = flat.reshape(SIZE, SIZE)
     here, right, below = (part.ravel() for part in (grid[:-1, :-1], grid[:-1, 1:], grid[1:, :-1]))
     inside = (here >= 0) & (right >= 0) & (below >= 0)
     here, right, below = here[inside], right[inside], below[inside]

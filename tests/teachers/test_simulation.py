@@ -115,7 +115,7 @@ def test_loose_cloth_stays_out_of_a_bone_that_moves_into_it() -> None:
 
 def test_only_turned_surfaces_feel_gravity() -> None:
     half_turn = np.array([[1.0, 0, 0, 0], [0, 1.0, 0, 0]])
-    np.testing.assert_allclose(gravity_beyond_rest(half_turn), [[0, 0, 0], [0, -2 * 9.81, 0]], atol=1e-12)
+    np.testing.assert_allclose(gravity_beyond_rest(half_turn), np.array([[0, 0, 0], [0, -2 * 9.81, 0]]), atol=1e-12)
 
 
 def test_one_rings_list_every_edge_from_both_ends() -> None:

@@ -36,7 +36,7 @@ def check_gradient(value: Callable[[torch.Tensor], torch.Tensor], at: torch.Tens
     """Against a central difference along a random direction."""
     towards = torch.randn(at.shape, generator=torch.Generator().manual_seed(7), dtype=torch.float64)
     leaf = at.clone().requires_grad_()
-    value(leaf).backward()  # type: ignore[no-untyped-call]
+    value(leaf).backward()
     assert leaf.grad is not None
     step = 1e-7
     difference = (value(at + step * towards) - value(at - step * towards)) / (2 * step)
@@ -76,7 +76,7 @@ def test_chamfer_pulls_a_wider_tube_in(mesh: Mesh) -> None:
     wider = torch.tensor(mesh.vertices * [1.2, 1, 1.2]).requires_grad_()
     loss = chamfer(wider, samples, cloud)
     assert float(loss.detach()) == pytest.approx(2 * (0.2 * RADIUS) ** 2, rel=0.2)
-    loss.backward()  # type: ignore[no-untyped-call]
+    loss.backward()
     assert wider.grad is not None
     outward = (wider.grad[:, [0, 2]] * wider.detach()[:, [0, 2]]).sum(1)
     assert (outward > 0).double().mean() > 0.95
@@ -200,7 +200,7 @@ def test_silhouettes_pull_a_shifted_tube_to_its_mask(mesh: Mesh) -> None:
     right = torch.tensor(np.linalg.inv(camera().view)[:3, 0])
     shift = torch.tensor(0.05, dtype=torch.float64, requires_grad=True)
     before = silhouette_error(posed + shift * right, samples, [Outline(eye, mask)])
-    before.backward()  # type: ignore[no-untyped-call]
+    before.backward()
     assert shift.grad is not None
     assert shift.grad > 0
     assert silhouette_error(posed, samples, [Outline(eye, mask)]) < before / 100

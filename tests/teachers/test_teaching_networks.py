@@ -78,7 +78,7 @@ def test_blocks_add_to_what_a_node_knows(rig: Rig) -> None:
     own = torch.relu(features.mix @ features.parts(inputs) + features.code)
     with torch.no_grad():
         for block in features.blocks:
-            block.weight.zero_()
+            block.weight.zero_()  # type: ignore[operator]
     torch.testing.assert_close(features(inputs), own)
 
 

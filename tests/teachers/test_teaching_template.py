@@ -6,21 +6,21 @@ import torch
 from synthetic_avatar import synthetic_avatar
 
 from mua import rotation
-from mua.avatar.model import Model
+from mua.asset.avatar import Avatar
 from mua.kernels.dq_skinning import blend_vertices
 from mua.pose.descriptor import describe
 from mua.teachers.trained.drivable_template import DrivableTemplate
 
 # Two blends and a transform of some 30 operations each on lengths of up to 3 metres.
-BOUND = {torch.float32: 90 * 3 * np.finfo(np.float32).eps, torch.float64: 90 * 3 * np.finfo(np.float64).eps}
+BOUND = {torch.float32: 90 * 3 * float(np.finfo(np.float32).eps), torch.float64: 90 * 3 * np.finfo(np.float64).eps}
 
 
 @pytest.fixture(scope="module")
-def avatar() -> Model:
+def avatar() -> Avatar:
     return synthetic_avatar()
 
 
-def inputs(avatar: Model) -> tuple[torch.Tensor, torch.Tensor]:
+def inputs(avatar: Avatar) -> tuple[torch.Tensor, torch.Tensor]:
     """Descriptors [F, D] and joints [F, J, 8] float64 of a clip."""
     clip, skeleton = avatar.clips[0], avatar.rig.skeleton
     descriptors = describe(skeleton, avatar.encoding, clip.rotations, clip.translations)
@@ -28,7 +28,7 @@ def inputs(avatar: Model) -> tuple[torch.Tensor, torch.Tensor]:
 
 
 @pytest.mark.parametrize("dtype", [torch.float32, torch.float64])
-def test_without_a_deformation_it_is_the_skinned_rig(avatar: Model, dtype: torch.dtype) -> None:
+def test_without_a_deformation_it_is_the_skinned_rig(avatar: Avatar, dtype: torch.dtype) -> None:
     descriptors, joints = inputs(avatar)
     rig = avatar.rig
     found = DrivableTemplate(rig)(descriptors.to(dtype), joints.to(dtype))
@@ -41,7 +41,7 @@ def test_without_a_deformation_it_is_the_skinned_rig(avatar: Model, dtype: torch
     np.testing.assert_allclose(found.canonical[0], rig.mesh.vertices, rtol=0, atol=BOUND[dtype])
 
 
-def test_a_deformation_moves_the_canonical_vertices(avatar: Model) -> None:
+def test_a_deformation_moves_the_canonical_vertices(avatar: Avatar) -> None:
     descriptors, joints = inputs(avatar)
     shift = torch.tensor([0.01, -0.02, 0.03], dtype=torch.float64)
     rest = torch.tensor(avatar.rig.mesh.vertices)
@@ -56,7 +56,7 @@ def test_a_deformation_moves_the_canonical_vertices(avatar: Model) -> None:
     assert torch.allclose(apart, shift.norm().to(apart).expand_as(apart), atol=1e-12)
 
 
-def test_gradients_reach_the_joints(avatar: Model) -> None:
+def test_gradients_reach_the_joints(avatar: Avatar) -> None:
     descriptors, joints = inputs(avatar)
     template = DrivableTemplate(avatar.rig).double()
     generator = torch.Generator().manual_seed(3)
@@ -69,7 +69,7 @@ def test_gradients_reach_the_joints(avatar: Model) -> None:
         return (weights * template(descriptors[:2], of).posed).sum()
 
     leaf = joints[:2].clone().requires_grad_()
-    value(leaf).backward()  # type: ignore[no-untyped-call]
+    value(leaf).backward()
     assert leaf.grad is not None
     difference = (value(joints[:2] + 1e-6 * towards) - value(joints[:2] - 1e-6 * towards)) / 2e-6
     torch.testing.assert_close((leaf.grad * towards).sum(), difference, rtol=1e-6, atol=1e-6)

@@ -10,7 +10,7 @@ from mua.teachers.trained.texels import SurfaceTextures, TexelNets, normals
 from mua.teachers.trained.unet import UNet
 from mua.texture.surfels import vertex_normals
 
-BOUND = 40 * np.finfo(np.float32).eps  # some ten operations on lengths of up to 2 metres, twice
+BOUND = 40 * float(np.finfo(np.float32).eps)  # some ten operations on lengths of up to 2 metres, twice
 
 
 def posed() -> torch.Tensor:
@@ -95,7 +95,7 @@ def test_the_networks_move_splats_of_a_larger_figure_farther_and_change_nothing_
 
 
 def test_levels_are_twice_as_wide_up_to_eight_times() -> None:
-    widths = [block[0].out_channels for block in UNet(3, 2, channels=2, levels=6).down]
+    widths = [block[0].out_channels for block in UNet(3, 2, channels=2, levels=6).down]  # type: ignore[index]
     assert widths == [2, 4, 8, 16, 16, 16]
 
 

@@ -186,7 +186,7 @@ def test_unrefined_poses_are_those_of_the_clip() -> None:
     clip, skeleton = synthetic_avatar().clips[0], subject().rig.skeleton
     wanted = skeleton.skinning(clip.rotations, clip.translations)
     found = refinement(3.0, [list(range(len(clip)))])(0).detach().numpy()
-    np.testing.assert_allclose(found, wanted, rtol=0, atol=60 * np.finfo(np.float32).eps)
+    np.testing.assert_allclose(found, wanted, rtol=0, atol=60 * float(np.finfo(np.float32).eps))
 
 
 def away(poses: PoseRefinement) -> float:
@@ -254,7 +254,7 @@ def test_a_refined_window_is_that_of_the_refined_poses() -> None:
     shown = material()
     with torch.no_grad():
         found = Lesson(teacher(settings), shown, settings, refinement=poses).window(2)
-    tolerance = 60 * np.finfo(np.float32).eps
+    tolerance = 60 * float(np.finfo(np.float32).eps)
     for name in ("joints", "root", "back"):
         torch.testing.assert_close(getattr(found, name), getattr(wanted, name), rtol=0, atol=tolerance)
     assert (wanted.back - motion()[4].back).abs().max() > 0.01
@@ -336,9 +336,9 @@ def test_what_is_added_to_colours_costs_nothing_of_itself() -> None:
     lesson = Lesson(teacher(), material(), replace(SETTINGS, weights=LossWeights(l1=0, ssim=0, alpha=0, residual=1)))
     last = lesson.teacher.nets.appearance.last.bias
     with torch.no_grad():
-        last.fill_(0.5)
+        last.fill_(0.5)  # type: ignore[union-attr]
         assert float(lesson(torch.tensor([0]), torch.ones(1, 3))) == 0
-        lesson.teacher.nets.geometry.last.bias.fill_(0.5)
+        lesson.teacher.nets.geometry.last.bias.fill_(0.5)  # type: ignore[union-attr]
         assert float(lesson(torch.tensor([0]), torch.ones(1, 3))) == pytest.approx(0.25, rel=0.01)
 
 
@@ -357,7 +357,7 @@ def test_what_all_cameras_share_is_no_cameras_own_colour() -> None:
 @torch.no_grad()
 def test_no_residual_is_so_large_that_a_splat_is_lost_for_good() -> None:
     own = teacher()
-    own.nets.geometry.last.bias.fill_(1e6)
+    own.nets.geometry.last.bias.fill_(1e6)  # type: ignore[union-attr]
     assert own(motion()[0]).added.max() == pytest.approx(MOST_RESIDUAL)
 
 

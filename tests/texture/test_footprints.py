@@ -1,5 +1,7 @@
 """What texels have to cover: surfaces come out closed whatever their triangles' share of the texture is."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from patches import grid_faces, joined
@@ -18,7 +20,7 @@ OPAQUE = 0.8  # of what lies behind, a fifth shines through where two charts mee
 
 def laid(mesh: Mesh) -> tuple[TexelMap, Surfels, np.ndarray]:
     texels = build_texel_map(mesh, SIZE)
-    at = {"texels": texels.texels, "triangles": texels.triangles, "barycentrics": texels.barycentrics}
+    at: dict[str, Any] = {"texels": texels.texels, "triangles": texels.triangles, "barycentrics": texels.barycentrics}
     found = rest_surfels(mesh, size=SIZE, **at)
     return texels, found, TexelPoints(mesh, SIZE, **at).places + found.aside
 
@@ -88,7 +90,7 @@ def test_neighbouring_surfels_overlap() -> None:
     mesh = graded(np.array([1, 0.3, 2, 1.0]), 0.5)
     texels, found, places = laid(mesh)
     inner = ~found.aside.any(axis=1)  # those at the border are as wide as the surface that is left to them
-    beside = np.flatnonzero((np.diff(texels.texels) == 1) & inner[1:] & inner[:-1])
+    beside = np.flatnonzero((np.diff(texels.texels) == 1) & inner[1:] & inner[:-1])  # type: ignore[index]
     gap = np.linalg.norm(places[beside + 1] - places[beside], axis=1)
     extent = np.exp(found.log_scales[:, :2]).max(axis=1)
     assert np.all(gap <= (extent[beside] + extent[beside + 1]) / (2 * SPREAD) * (1 + 1e-6))

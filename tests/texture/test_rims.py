@@ -1,5 +1,7 @@
 """Surfels along the borders of charts: an outline is where half is covered, wherever it cuts through the texels."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from surfel_coverage import coverage
@@ -27,7 +29,7 @@ def square(texels: float) -> Mesh:
 def test_half_is_covered_at_an_outline_that_cuts_through_texels(beyond: float) -> None:
     mesh = square(12 + beyond)
     texels = build_texel_map(mesh, SIZE)
-    at = {"texels": texels.texels, "triangles": texels.triangles, "barycentrics": texels.barycentrics}
+    at: dict[str, Any] = {"texels": texels.texels, "triangles": texels.triangles, "barycentrics": texels.barycentrics}
     found = rest_surfels(mesh, size=SIZE, **at)
     centres = TexelPoints(mesh, SIZE, **at).places + found.aside
     along, out = np.meshgrid(np.linspace(5, 7, 9), np.linspace(11, 14, 121), indexing="ij")

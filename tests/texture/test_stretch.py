@@ -1,5 +1,7 @@
 """Surfels of a stretched surface: they grow along the stretch and along nothing else, and stay closed."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from surfel_coverage import coverage
@@ -18,7 +20,7 @@ SIZE = 61
 def stretched(mesh: Mesh, moved: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Log stretches [2, N] of a mesh's surfels, their places and scales after it."""
     texels = build_texel_map(mesh, SIZE)
-    at = {"texels": texels.texels, "triangles": texels.triangles, "barycentrics": texels.barycentrics}
+    at: dict[str, Any] = {"texels": texels.texels, "triangles": texels.triangles, "barycentrics": texels.barycentrics}
     found = rest_surfels(mesh, size=SIZE, **at)
     _, strain = SurfaceFrames(mesh.vertices, mesh.faces)(moved)
     at_texels = np.einsum("nk,nkc->cn", texels.barycentrics, strain[mesh.faces[texels.triangles]])

@@ -45,9 +45,9 @@ def test_frames_are_unit_and_look_along_normal_and_u() -> None:
 
 def test_neighbouring_frames_have_one_sign_right_around_the_tube() -> None:
     found, texels = tube_surfels()
-    grid = np.full((SIZE * SIZE, 4), np.nan)
-    grid[texels] = found.rotations
-    grid = grid.reshape(SIZE, SIZE, 4)
+    flat = np.full((SIZE * SIZE, 4), np.nan)
+    flat[texels] = found.rotations
+    grid = flat.reshape(SIZE, SIZE, 4)
     for a, b in ((grid[:, :-1], grid[:, 1:]), (grid[:-1], grid[1:])):
         dots = np.sum(a * b, axis=2)
         assert np.nanmin(dots) > 0

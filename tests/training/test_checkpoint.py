@@ -94,9 +94,9 @@ def test_a_disk_that_is_full_is_a_sentence(tmp_path: Path, monkeypatch: pytest.M
     """Though torch tells of its archive alone."""
     checkpoints, save = Checkpoints(tmp_path, "a"), torch.save
     checkpoints.save("stage", {"step": 1})
-    monkeypatch.setattr(torch, "save", lambda state, _: save(state, Full()))
+    monkeypatch.setattr(torch, "save", lambda state, _: save(state, Full()))  # type: ignore[arg-type]
     with pytest.raises(RuntimeError, match="unexpected pos"):
-        save({"weight": torch.zeros(100_000)}, Full())
+        save({"weight": torch.zeros(100_000)}, Full())  # type: ignore[arg-type]
     with pytest.raises(InputError, match=r"stage\.pt.*No space left on device"):
         checkpoints.save("stage", {"weight": torch.zeros(100_000)})
     assert checkpoints.load("stage") == {"step": 1}

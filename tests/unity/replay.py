@@ -103,7 +103,7 @@ class _Player:
     def draw(self, event: dict[str, Any]) -> None:
         self.flush()
         numbers = {**event["buffers"], **event.get("block_buffers", {})}
-        counts = event.get("vertices"), event.get("instances")
+        counts: Any = event.get("vertices"), event.get("instances")
         if "indirect" in event:
             number, offset = event["indirect"]
             counts = self.buffers[number].read()[offset // 4 :][:2].tolist()
@@ -111,7 +111,7 @@ class _Player:
             Drawn(
                 shader=event["shader"],
                 pass_index=event["pass"],
-                arguments=tuple(counts),
+                arguments=(counts[0], counts[1]),
                 indirect="indirect" in event,
                 buffers={name: self.buffers[number].read() for name, number in numbers.items()},
                 strides={name: self.strides[number] for name, number in numbers.items()},

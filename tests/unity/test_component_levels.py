@@ -3,6 +3,7 @@
 import sys
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -52,7 +53,7 @@ def test_avatars_share_a_budget_the_nearest_first(story: Story) -> None:
 
 def test_a_level_that_is_picked_in_the_inspector_is_checked(story: Story, folder: Path) -> None:
     avatar = synthetic_avatar(1)
-    taps = {name: np.pad(getattr(avatar.wavelet, name), 12) for name in ("rec_lo", "rec_hi")}
+    taps: dict[str, Any] = {name: np.pad(getattr(avatar.wavelet, name), 12) for name in ("rec_lo", "rec_hi")}
     write(folder / "long.muaavatar", replace(avatar, wavelet=replace(avatar.wavelet, **taps)), storage="f16")
     told = story("LevelIsPicked", "long")
     assert told["message"] == ["", "the avatar has no such level of detail; it is shown at full size."]
@@ -71,7 +72,7 @@ def test_an_avatar_that_lacks_the_level_asked_for_is_shown_at_full_size(story: S
 
 def test_an_avatar_without_levels_says_so_once_and_shows_all(story: Story, folder: Path) -> None:
     avatar = synthetic_avatar(1)
-    taps = {name: np.pad(getattr(avatar.wavelet, name), 12) for name in ("rec_lo", "rec_hi")}
+    taps: dict[str, Any] = {name: np.pad(getattr(avatar.wavelet, name), 12) for name in ("rec_lo", "rec_hi")}
     write(folder / "long.muaavatar", replace(avatar, wavelet=replace(avatar.wavelet, **taps)), storage="f16")
     told = story("LacksLevel", "long")
     assert told["splats"] == [str(counts(1)[0])] * 2

@@ -167,10 +167,10 @@ class Painter:
         """[H, W, 4] of each eye; `plane`: an eye and the depth on the device over the left half of its image."""
         held = dict(scene.drawn["indirect"].buffers)
         held |= {} if splats is None else {"splats": splats}
-        buffers = [self.device.buffer(held[name], name=name) for name in ("splats", "order")]
+        kept, order = (self.device.buffer(held[name], name=name) for name in ("splats", "order"))
         words = np.array([scene.drawn["indirect"].arguments[0], 1, 0, 0], np.uint32)
         arguments = self.device.buffer(words, name="arguments", indirect=True)
-        sorted_splats = SortedSplats(*buffers, arguments)
+        sorted_splats = SortedSplats(kept, order, arguments)
         renderer = SplatRenderer(self.device, self.format, depth_format=DEPTH_FORMAT)
         target = Target(self.device, self.format, (len(scene.cameras) * SCREEN[0], SCREEN[1]), 1.0, self.folder)
         half = None if plane is None else (plane[1], (plane[0] * SCREEN[0], 0, SCREEN[0] // 2, SCREEN[1]))

@@ -3,6 +3,7 @@
 import json
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -54,7 +55,9 @@ def test_levels_without_texels_are_those_of_python(csharp: CSharp, program: Path
 @pytest.mark.parametrize("taps", [32, 34])
 def test_a_wavelet_of_many_taps_has_no_levels(csharp: CSharp, program: Path, tmp_path: Path, taps: int) -> None:
     avatar = synthetic_avatar()
-    filters = {name: np.pad(getattr(avatar.wavelet, name), (taps - 10) // 2) for name in ("rec_lo", "rec_hi")}
+    filters: dict[str, Any] = {
+        name: np.pad(getattr(avatar.wavelet, name), (taps - 10) // 2) for name in ("rec_lo", "rec_hi")
+    }
     long = replace(avatar, wavelet=replace(avatar.wavelet, **filters))
     assert_levels_alike(csharp, program, tmp_path / "a.muaavatar", long, "f32")
 
@@ -111,7 +114,7 @@ def test_the_table_that_both_players_choose_by(csharp: CSharp, program: Path, tm
     assert dict(zip([case["name"] for case in CASES], said, strict=True)) == {c["name"]: c["levels"] for c in CASES}
 
 
-def line_of(case: dict) -> str:  # type: ignore[type-arg]
+def line_of(case: dict) -> str:
     """As LevelProgram reads it."""
     numbers = [-1 if case["budget"] is None else case["budget"]]
     for avatar in case["avatars"]:

@@ -25,7 +25,7 @@ from mua.pose.resample import resample
 from mua.pose.skeleton import Skeleton
 
 BOUND = 2048 * np.finfo(float).eps  # some hundred operations, each rounded once, on numbers up to ten
-ROUNDING = np.finfo(np.float32).eps  # what the kernels read is rounded to float32 in the end
+ROUNDING = float(np.finfo(np.float32).eps)  # what the kernels read is rounded to float32 in the end
 PLACE = rotation.dual_from_rigid(np.array([0.8, 0, 0.6, 0]), np.array([1, -2, 0.5]))
 COMPONENTS = 9
 SECONDS = (0.0, 0.04, 0.2, 0.5, 1.0, 12.345, 1e6, -0.01, -3.3)

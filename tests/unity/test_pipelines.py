@@ -33,8 +33,8 @@ def test_the_device_is_told_of_eyes_instances_and_pixels(recorded: Recorded) -> 
         ("SplatProject", "eyes", mode.eyes, 1),
         ("ScatterDigits", "instances", mode.instances, SORTED.count("ScatterDigits")),
     ):
-        given = [int(values[0]) for values in recorded.constants("moved", kernel, constant)]
-        assert given == [expected] * times * mode.passes
+        firsts = [int(values[0]) for values in recorded.constants("moved", kernel, constant)]
+        assert firsts == [expected] * times * mode.passes
     for given in recorded.constants("moved", "SplatProject", "screen"):
         assert tuple(given[:2]) == mode.screen
     for given in recorded.constants("moved", "SplatProject", "near"):

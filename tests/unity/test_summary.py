@@ -56,7 +56,8 @@ def python_tables(path: Path) -> list[list[str]]:
     return [overview, *map(flattened, rest)]
 
 
-def flattened(table: Table) -> list[str]:
+def flattened(table: Table | str) -> list[str]:
+    assert isinstance(table, Table)
     rows = zip(*(column.cells for column in table.columns), strict=True)
     cells: list[Sequence[object]] = [[table.title], [column.header for column in table.columns], *rows]
     return ["\t".join(" ".join(str(cell).split()) for cell in row) for row in cells]

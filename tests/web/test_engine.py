@@ -369,7 +369,7 @@ def test_a_packed_avatar_and_a_plain_one_beside_each_other_look_as_alone(opened:
         show(page, SPLATS, 0, 24.0)
         alone.append(screenshot(page))
         page.evaluate("avatar.remove()")
-    assert not np.array_equal(*alone)
+    assert not np.array_equal(alone[0], alone[1])
     camera = page.evaluate("({...player.camera})")
     for source in ('"a.muaavatar"', '"b.muaavatar"'):
         assert load(page, source) == ""

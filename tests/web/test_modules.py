@@ -143,7 +143,7 @@ def test_values_are_those_of_python(tmp_path: Path, change: Any, storage: Any) -
     avatar, [found] = read(path), node("values", path, *FRAMES)
     clip, skeleton, texels = resample(avatar.clips[0], avatar.encoding.rate), avatar.rig.skeleton, avatar.rig.texels
     poses = clip.rotations[FRAMES], clip.translations[FRAMES]
-    close = {
+    close: dict[str, Any] = {
         "rotations": poses[0].reshape(len(FRAMES), -1),
         "translations": poses[1].reshape(len(FRAMES), -1),
         "joints": skeleton.skinning(*poses).reshape(len(FRAMES), -1),
@@ -200,7 +200,9 @@ def scattered() -> Avatar:
 
 def with_taps(taps: int) -> Avatar:
     avatar = synthetic_avatar()
-    filters = {name: np.pad(getattr(avatar.wavelet, name), (taps - 10) // 2) for name in ("rec_lo", "rec_hi")}
+    filters: dict[str, Any] = {
+        name: np.pad(getattr(avatar.wavelet, name), (taps - 10) // 2) for name in ("rec_lo", "rec_hi")
+    }
     return replace(avatar, wavelet=replace(avatar.wavelet, **filters))
 
 

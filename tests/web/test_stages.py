@@ -29,7 +29,7 @@ Give = Callable[[bytes, bytes, int], str]  # first and second half of a file, an
 def packed() -> bytes:
     """A file with a surface and two clips."""
     avatar = with_surface(synthetic_avatar())
-    return encode(replace(avatar, clips=[*avatar.clips, replace(avatar.clips[0], name="again")]), storage="packed")
+    return encode(replace(avatar, clips=(*avatar.clips, replace(avatar.clips[0], name="again"))), storage="packed")
 
 
 def stages(folder: Path, content: bytes, step: int = STEP) -> list[dict[str, Any]]:

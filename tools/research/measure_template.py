@@ -30,7 +30,7 @@ from mua.rig.character import Character, Mesh
 from mua.rig.moving import moving_joints
 from mua.rig.rig import Rig
 from mua.student.model import build_mlp, linear_layers
-from mua.teachers.simulated.surface import SimulatedSurface
+from mua.teachers.simulated.simulated_surface import SimulatedSurface
 from mua.teachers.trained.drivable_template import DrivableTemplate
 from mua.teachers.trained.mesh_losses import Cloud, Samples
 from mua.teachers.trained.motion_deformation import GraphSizes, MotionDeformation
