@@ -1,7 +1,6 @@
 // The blocks of 2 x 2 texels that become the texels of a coarser level. Reference: section 9 of schemas/README.md.
 
-import { fault } from "./parser.js";
-import { refuse } from "./rig.js";
+import { fault, refuse } from "./parser.js";
 
 /** @typedef {{size: number, texels: Int32Array}} Texels row * size + column of each, ascending */
 /** @typedef {{texels: Int32Array, finer: Int32Array, codes: Uint8Array}} Blocks as texels [B], what they hold [B, 4], -1 for none */

@@ -2,7 +2,7 @@
 // Reference: python/mua/asset/magnitude.py.
 
 import { MAGNITUDE } from "./limits.js";
-import { refuse } from "./rig.js";
+import { refuse } from "./parser.js";
 import { expanded, largest } from "./tensors.js";
 
 /** @typedef {import("./model.js").Branch} Branch */

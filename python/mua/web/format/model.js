@@ -3,8 +3,7 @@
 
 import { LARGEST_TAP, MAX_TAPS } from "./limits.js";
 import { general } from "./numbers.js";
-import { fault } from "./parser.js";
-import { refuse } from "./rig.js";
+import { fault, refuse } from "./parser.js";
 import { realTensor, reals, someTensor } from "./tensors.js";
 
 /** @typedef {import("./parser.js").Tree} Tree */

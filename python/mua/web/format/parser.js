@@ -21,6 +21,9 @@ export function fault(/** @type {string} */ code, /** @type {string} */ field, /
   return new AvatarError(field ? `${field}: ${sentence}` : sentence, { code, field });
 }
 
+/** An error of a value that no file may have. */
+export const refuse = (/** @type {string} */ field, /** @type {string} */ sentence) => fault("value", field, sentence);
+
 /**
  * The root table of a file, every offset, length, alignment and string checked.
  * @param {ArrayBuffer} content

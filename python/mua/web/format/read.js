@@ -6,9 +6,9 @@ import { LARGEST_RATE, LEAST_RATE, LEAST_SCALE, MAX_ADDED, MAX_FRAMES, MAX_WINDO
 import { checkMagnitude } from "./magnitude.js";
 import { readBranch, readCoarse, readWavelet } from "./model.js";
 import { general, shortest } from "./numbers.js";
-import { fault, parse } from "./parser.js";
+import { fault, parse, refuse } from "./parser.js";
 import { unpack } from "./packing.js";
-import { besideRoot, readSkeleton, readSurface, readTemplate, readTexels, refuse, translated, unit } from "./rig.js";
+import { besideRoot, readSkeleton, readSurface, readTemplate, readTexels, translated, unit } from "./rig.js";
 import { checkSizes } from "./sizes.js";
 import { leaveOut } from "./stages.js";
 import { expanded, reals, someTensor } from "./tensors.js";

@@ -7,15 +7,13 @@ import { blocks, blockTriangles } from "../surface.js";
 import { readLevels } from "./blocks.js";
 import { BARYCENTRIC_SLACK, BIND_BOUND, LARGEST, MAX_INFLUENCES, UNIT_BOUND, WEIGHT_BOUND } from "./limits.js";
 import { general, scientific, shortest } from "./numbers.js";
-import { fault } from "./parser.js";
+import { fault, refuse } from "./parser.js";
 import { indices, reals } from "./tensors.js";
 
 /** @typedef {import("./parser.js").Tree} Tree */
 
 const DUAL_NUMBERS = 8; // of a dual quaternion
 const END = -1; // of a strip
-
-export const refuse = (/** @type {string} */ field, /** @type {string} */ sentence) => fault("value", field, sentence);
 
 /** @typedef {ReturnType<typeof readSkeleton>} Skeleton */
 

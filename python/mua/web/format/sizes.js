@@ -12,7 +12,7 @@ import {
   TEXTURE_ROOM,
   TEXTURE_TIMES,
 } from "./limits.js";
-import { refuse } from "./rig.js";
+import { refuse } from "./parser.js";
 
 /** @typedef {import("./parser.js").Tree} Tree */
 
