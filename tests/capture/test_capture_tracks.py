@@ -151,14 +151,14 @@ def test_tracks_of_several_clips_need_names_of_their_own(capture: Capture) -> No
         open_capture(capture.folder)
 
 
-def test_the_check_tells_of_tracks_beside_the_person(capture: Capture) -> None:
-    def told() -> list[str]:
+def test_the_check_reports_tracks_beside_the_person(capture: Capture) -> None:
+    def problems() -> list[str]:
         return [problem for problem in check_capture(capture, frames=1).problems if ".npz" in problem]
 
-    assert told() == []
+    assert problems() == []
     spoil(capture, points=1000 * surfaces(capture, "walk"))
-    (one,) = told()
+    (one,) = problems()
     assert "Clip walk" in one
     assert "walk.npz: half of the points are more than" in one
     (capture.folder / "reach.npz").unlink()
-    assert any("reach.npz: there is no such file" in problem for problem in told())
+    assert any("reach.npz: there is no such file" in problem for problem in problems())

@@ -192,7 +192,7 @@ def test_skin_without_bind_matrices_is_bound_at_rest(tmp_path: Path) -> None:
     np.testing.assert_allclose(bare.bind_translations, skinned.bind_translations, atol=FLOAT_BOUND)
 
 
-def test_centimetres_taken_for_metres_are_told(tmp_path: Path) -> None:
+def test_centimetres_taken_for_metres_are_noted(tmp_path: Path) -> None:
     glb = rig(skin=False, mesh=False)
     glb.json["nodes"][0]["scale"] = [1, 1, 1]
     animation = read(glb, tmp_path)

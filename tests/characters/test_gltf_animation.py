@@ -92,7 +92,7 @@ def test_a_shift_too_small_to_see_is_not_kept(tmp_path: Path) -> None:
     np.testing.assert_array_equal(clip.translations, np.tile(surfaces.skeleton.bind_translations, (31, 1, 1)))
 
 
-def test_scales_are_kept_for_the_mesh_and_told(tmp_path: Path) -> None:
+def test_scales_are_kept_for_the_mesh_with_a_note(tmp_path: Path) -> None:
     glb = body()
     animate(glb, 0, "translation", times=[0.0, 1.0], values=[[0, 0, 0], [1, 0, 0]])
     animate(glb, 2, "translation", times=[0.0, 1.0], values=[[0, 0.5, 0], [0, 0.51, 0]])

@@ -70,7 +70,7 @@ def test_a_bind_pose_that_is_a_little_twisted_faces_along_an_axis_all_the_same()
     assert moved == pytest.approx(np.radians(30), abs=ROUNDING)
 
 
-def test_toes_tell_where_a_rig_exchanges_left_and_right() -> None:
+def test_toes_show_where_a_rig_exchanges_left_and_right() -> None:
     skeleton = named(person(), "Left", "Right")
     assert front_of(skeleton, *turned(skeleton, Rotation.identity())) == pytest.approx(0, abs=ROUNDING)
 

@@ -56,7 +56,7 @@ def test_parts_of_the_trunk_that_hang_on_the_root_go_with_the_body() -> None:
     np.testing.assert_allclose(np.abs(np.sum(turned[0] * turned[1], axis=-1)), 1, atol=ANGLE_BOUND)
 
 
-def test_tells_which_limbs_of_the_character_nothing_moves() -> None:
+def test_says_which_limbs_of_the_character_nothing_moves() -> None:
     whole = person()
     arm = ("Shoulder", "Arm", "ForeArm", "Hand", "HandMiddle1")
     kept = [j for j, name in enumerate(whole.names) if name.removeprefix("Left").removeprefix("Right") not in arm]

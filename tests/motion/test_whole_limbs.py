@@ -83,7 +83,7 @@ def test_a_limb_of_one_bone_stays_one() -> None:
     assert "left forearm" not in match_joints(block, block).roles
 
 
-def test_a_motion_without_names_is_told_by_its_frames_where_its_rest_pose_is_no_person() -> None:
+def test_a_motion_without_names_is_recognised_by_its_frames_where_its_rest_pose_is_no_person() -> None:
     """All bones of the rest pose point one way: only the frames show a body."""
     whole = person()
     clip = walk(whole)

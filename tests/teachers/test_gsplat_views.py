@@ -87,7 +87,7 @@ def test_gsplat_draws_what_our_rasteriser_draws() -> None:
 
 
 @pytest.mark.usefixtures("stand_in")
-def test_a_lesson_chooses_what_draws_it() -> None:
+def test_training_views_are_drawn_by_the_rasteriser_asked_for() -> None:
     splats = in_torch(random_splats(20))
     eyes = [Eye.of(camera(screen), splats.centres) for screen in ((20, 16), (12, 24))]
     by_gsplat = draw_views(splats, eyes, by="gsplat")

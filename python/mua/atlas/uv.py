@@ -57,8 +57,8 @@ def build_atlas(surfaces: Surfaces, *, uv: UvMode, size: int, detail: Detail | N
     if uv == "keep":
         layout = _keep(source)
         trouble = _trouble(source, layout)
-        told = (f"The UV layout was kept although {trouble}.",) if trouble else ()
-        layout = _Layout(layout.corners, layout.as_is, told)
+        notes = (f"The UV layout was kept although {trouble}.",) if trouble else ()
+        layout = _Layout(layout.corners, layout.as_is, notes)
     else:
         wound = overlapping(source.corners, source.charts)[source.charts] > LOSS_ALLOWED
         anew = wound | source.starved if uv == "auto" else np.ones(len(source.charts), bool)
@@ -135,10 +135,10 @@ def _lay_out(
     cut, kept = len(np.unique(charts[anew])), len(np.unique(charts[~anew]))
     charts, finer = split_by_factor(nodes, corners, charts=charts, surface=surface, finer=finer)
     flat = even(corners, source.positions, charts) * finer[:, None, None]
-    return _Layout(pack(flat, charts), as_is=False, notes=(_told(anew, kept=kept, cut=cut), *absent))
+    return _Layout(pack(flat, charts), as_is=False, notes=(_note(anew, kept=kept, cut=cut), *absent))
 
 
-def _told(
+def _note(
     anew: Array,  # [F] bool
     *,
     kept: int,

@@ -21,8 +21,8 @@ def cameras_apart(posed: Posed, views: Sequence[Seen]) -> Iterator[str]:
     """Cameras that fit worse than the others and what explains it, and views that fit worse than their camera."""
     for name, of in by_camera(views).items():
         mean, others = mean_overlap(of), _others(views, name)
-        if mean < others - TRIED and (told := _explained(posed, of, others - BELOW)) is not None:
-            yield f"Camera {name}: overlaps by {mean:.0%}, the others typically by {others:.0%}; {told}."
+        if mean < others - TRIED and (cause := _explained(posed, of, others - BELOW)) is not None:
+            yield f"Camera {name}: overlaps by {mean:.0%}, the others typically by {others:.0%}; {cause}."
         elif mean < OUTLIER * others:
             yield _camera_apart(posed, of, views, mean, others)
         else:
@@ -80,7 +80,7 @@ def _moment(fit: Fit) -> str:
 
 def _camera_apart(posed: Posed, of: Sequence[Seen], views: Sequence[Seen], mean: float, typical: float) -> str:
     """Whose images these may be: those of the camera whose calibration fits them best."""
-    name, told = of[0].camera.name, f"overlaps by {mean:.0%}, a camera typically by {typical:.0%}"
+    name, finding = of[0].camera.name, f"overlaps by {mean:.0%}, a camera typically by {typical:.0%}"
     others = {view.camera.name: view.camera for view in views if view.camera.size == of[0].camera.size}
     fits = {
         other: float(np.mean([overlap(posed.covers(v.clip, v.frame, camera), v.mask) for v in of]))
@@ -88,8 +88,8 @@ def _camera_apart(posed: Posed, of: Sequence[Seen], views: Sequence[Seen], mean:
     }
     best = max(fits, key=lambda other: fits[other])
     if best != name and fits[best] > max(mean + GAIN, POOR):
-        return f"Camera {name}: {told}; its images fit the calibration of camera {best} by {fits[best]:.0%}."
-    return f"Camera {name}: {told}; its calibration, or which images it has, cannot be right."
+        return f"Camera {name}: {finding}; its images fit the calibration of camera {best} by {fits[best]:.0%}."
+    return f"Camera {name}: {finding}; its calibration, or which images it has, cannot be right."
 
 
 def _view_apart(posed: Posed, view: Seen, middle: float) -> str:
@@ -99,7 +99,7 @@ def _view_apart(posed: Posed, view: Seen, middle: float) -> str:
         for frame in range(len(posed.vertices[view.clip]))
     ]
     best = int(np.argmax(fits))
-    told = f"{str(view).capitalize()}: overlaps by {view.overlap:.0%}, its camera typically by {middle:.0%}"
+    finding = f"{str(view).capitalize()}: overlaps by {view.overlap:.0%}, its camera typically by {middle:.0%}"
     if best != view.frame and fits[best] > max(view.overlap + GAIN, POOR):
-        return f"{told}; the mask fits frame {best} by {fits[best]:.0%}."
-    return f"{told}; the mask or the pose cannot be right."
+        return f"{finding}; the mask fits frame {best} by {fits[best]:.0%}."
+    return f"{finding}; the mask or the pose cannot be right."

@@ -94,15 +94,15 @@ def _posed(capture: Capture, problems: list[str]) -> Posed:
 
 def _views(capture: Capture, posed: Posed, frames: int | None, problems: list[str]) -> list[Seen]:
     """Views of the clips that were posed; what cannot be read of a camera and clip is told once."""
-    seen, told = [], set()
+    seen, reported = [], set()
     for clip in capture.clips:
         for frame in chosen_frames(capture, clip, frames) if clip.name in posed.vertices else ():
             for camera in capture.cameras:
                 try:
                     seen.append(look_at(capture, posed, clip.name, frame, camera))
                 except InputError as error:
-                    if (clip.name, camera.name) not in told and not str(error).endswith("there is no such file"):
-                        told.add((clip.name, camera.name))
+                    if (clip.name, camera.name) not in reported and not str(error).endswith("there is no such file"):
+                        reported.add((clip.name, camera.name))
                         problems.append(f"Camera {camera.name}, clip {clip.name}, frame {frame}: {error}.")
     return seen
 

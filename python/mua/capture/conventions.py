@@ -43,12 +43,12 @@ class Convention:
         return self.inverse + self.opengl + (self.length != 1) + (not np.array_equal(self.world, np.eye(3)))
 
     def __str__(self) -> str:
-        told = ["the matrices are camera_to_world, expected their inverse"] if self.inverse else []
-        told += ["the cameras' axes are OpenGL's (y up, z back)"] if self.opengl else []
+        differences = ["the matrices are camera_to_world, expected their inverse"] if self.inverse else []
+        differences += ["the cameras' axes are OpenGL's (y up, z back)"] if self.opengl else []
         if not np.array_equal(self.world, np.eye(3)):
             rows = [f"{'-' if row.sum() < 0 else ''}{LETTERS[int(np.abs(row).argmax())]}" for row in self.world]
-            told.append(f"the calibration's world has other axes: its X, Y, Z are our {', '.join(rows)}")
-        return " and ".join([*told, *([LENGTHS[self.length]] if self.length != 1 else [])])
+            differences.append(f"the calibration's world has other axes: its X, Y, Z are our {', '.join(rows)}")
+        return " and ".join([*differences, *([LENGTHS[self.length]] if self.length != 1 else [])])
 
 
 def read_axes(text: str) -> Array:

@@ -14,7 +14,9 @@ def missing_files(capture: Capture) -> Iterator[str]:
         for field, what in (("images", "images"), ("masks", "masks"), ("backgrounds", "backgrounds")):
             pattern = getattr(capture, field)
             if pattern is not None:
-                yield from (f"Camera {camera.name}: {told}." for told in _missing(capture, pattern, camera.name, what))
+                yield from (
+                    f"Camera {camera.name}: {problem}." for problem in _missing(capture, pattern, camera.name, what)
+                )
 
 
 def _missing(capture: Capture, pattern: str, camera: str, what: str) -> Iterator[str]:

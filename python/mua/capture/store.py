@@ -105,11 +105,11 @@ class ViewStore:
     def _write(self, place: Path, view: View) -> None:
         if self._room <= 0:
             return
-        told = PngInfo()
-        told.add_text("box", " ".join(map(str, self._box(view))))
+        metadata = PngInfo()
+        metadata.add_text("box", " ".join(map(str, self._box(view))))
         picture = Image.fromarray(to_bytes(np.dstack([view.image, view.mask])))
         with replacing(place) as temporary:
-            picture.save(temporary, pnginfo=told, compress_level=QUICK)
+            picture.save(temporary, pnginfo=metadata, compress_level=QUICK)
         self._room -= place.stat().st_size
 
     def _box(self, view: View) -> Box:

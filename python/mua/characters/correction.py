@@ -48,12 +48,12 @@ def corrected(
 ) -> tuple[Scene, Correction]:
     """The scene at a plausible height in metres, upright and facing +Z."""
     correction = np.eye(4)
-    told = []
+    notes = []
     upright = upright_rotation(scene, bind) if stand else None
     if upright is not None:
         correction[:3, :3] = upright
         points, bind = points @ upright.T, replace(bind, places=bind.places @ upright.T)
-        told.append(
+        notes.append(
             "The character lies in its bind pose, because the file states a wrong up axis; it is turned upright."
         )
     unit, size_notes = plausible_unit(_height(points))
@@ -62,10 +62,10 @@ def corrected(
     if turn:
         c, s = np.cos(turn * np.pi / 2).round(), np.sin(turn * np.pi / 2).round()
         correction[:3, :3] = np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]]) @ correction[:3, :3]
-        told.append(
+        notes.append(
             f"The character's left and right joints show that it does not face +Z; it is turned by {turn * 90}°."
         )
-    change = Correction(unit, size_notes, tuple(told))
+    change = Correction(unit, size_notes, tuple(notes))
     if (correction == np.eye(4)).all():
         return scene, change
     return carried(scene, correction), change

@@ -61,8 +61,8 @@ def read_bvh(path: Path, *, scale: float | None = None) -> SourceMotion:
     read = _assemble(path, nodes, rate, values, scale)
     if len(values) == count:
         return read
-    told = f"{path.name}: holds {len(values)} frames, though it says {count}; all are read."
-    return replace(read, notes=(told, *read.notes))
+    note = f"{path.name}: holds {len(values)} frames, though it says {count}; all are read."
+    return replace(read, notes=(note, *read.notes))
 
 
 def _parse_hierarchy(path: Path, lines: list[str]) -> list[_Node]:

@@ -56,9 +56,9 @@ def joints_by_place(skeleton: Skeleton, poses: Array | None = None) -> dict[int,
     found = _by_pose(skeleton, bind, bends)
     if found or poses is None:
         return found
-    told = Counter(tuple(sorted(_by_pose(skeleton, at, bends).items())) for at in poses)
-    told.pop((), None)
-    return dict(told.most_common(1)[0][0]) if told else {}
+    votes = Counter(tuple(sorted(_by_pose(skeleton, at, bends).items())) for at in poses)
+    votes.pop((), None)
+    return dict(votes.most_common(1)[0][0]) if votes else {}
 
 
 def _by_pose(skeleton: Skeleton, at: Array, bends: Array) -> dict[int, str]:

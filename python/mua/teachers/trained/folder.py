@@ -13,14 +13,14 @@ import torch
 from mua.errors import InputError
 from mua.files.write import write_bytes
 from mua.pose.encoding import PoseEncoding
-from mua.recording.rig_file import load_rig, save_rig
+from mua.recording.rig_file import read_rig, write_rig
 from mua.rig.rig import Rig
 from mua.teachers.trained.model import Subject, TeacherModel
 from mua.teachers.trained.settings import LossWeights, TeacherSettings
 from mua.training.schedule import Schedule
 
 FILE, RIG, WEIGHTS = "teacher.json", "rig.npz", "weights.pt"
-FORMAT, VERSION = "mua-teacher", 2
+FORMAT, VERSION = "mua-teacher", 3
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class Description:
 
 def save_teacher(folder: Path, model: TeacherModel, description: Description) -> None:
     """Write a teacher; teacher.json comes last, so that a folder which holds it is whole."""
-    save_rig(folder / RIG, model.rig)
+    write_rig(folder / RIG, model.rig)
     content = io.BytesIO()  # an archive in a file would hold its temporary name, another one in each process
     torch.save({name: tensor.cpu() for name, tensor in model.state_dict().items()}, content)
     write_bytes(folder / WEIGHTS, content.getvalue())
@@ -46,7 +46,7 @@ def save_teacher(folder: Path, model: TeacherModel, description: Description) ->
 def load_teacher(folder: Path) -> tuple[TeacherModel, Description]:
     """Read a teacher; raises InputError where the folder holds none, or something in it is damaged."""
     description = _described(folder / FILE)
-    rig: Rig = load_rig(folder / RIG)
+    rig: Rig = read_rig(folder / RIG)
     try:
         state = torch.load(folder / WEIGHTS, map_location="cpu", weights_only=True)
         model = TeacherModel(Subject(rig, state["surfels"], description.encoding), description.settings)

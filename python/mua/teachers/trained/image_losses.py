@@ -32,7 +32,7 @@ class Material:
     tracks: Sequence[TexelTracks] = ()  # of each frame, where points were followed
 
 
-class Lesson(nn.Module):
+class ImageLoss(nn.Module):
     """The teacher with what is learnt beside it and needed in training alone."""
 
     def __init__(

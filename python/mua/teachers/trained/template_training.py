@@ -19,7 +19,7 @@ from mua.rig.rig import Rig
 from mua.teachers.trained.drivable_template import DrivableTemplate
 from mua.teachers.trained.mesh_losses import Cloud, Samples, chamfer, edges_of, roughness
 from mua.teachers.trained.motion_deformation import Deformed, GraphSizes, MotionDeformation
-from mua.teachers.trained.parameters import learning, same_bytes
+from mua.teachers.trained.parameters import deterministic, gradients_for
 from mua.teachers.trained.silhouette import Outline, silhouette_error
 from mua.teachers.trained.track_losses import Tracks, track_error
 from mua.training.checkpoint import Checkpoints, run_key
@@ -120,22 +120,22 @@ def fit_template(
     assert isinstance(deformation, MotionDeformation)
     deformation.prepare(observations.descriptors.cpu(), run.alone("template").generator)
     template.to(run.device)
-    lesson = _Lesson(template, observations, rig, settings, size=run.size)
+    template_loss = _TemplateLoss(template, observations, rig, settings, size=run.size)
     schedules = (settings.nodes, settings.offsets)
     nodes = [*deformation.node_features.parameters(), *deformation.node_motion.parameters()]
     offsets = [*deformation.vertex_features.parameters(), *deformation.vertex_offsets.parameters()]
-    with same_bytes():
-        for stage, schedule, learnt in zip(STAGES, schedules, (nodes, [*nodes, *offsets]), strict=True):
+    with deterministic():
+        for stage, schedule, parameters in zip(STAGES, schedules, (nodes, [*nodes, *offsets]), strict=True):
             own = run.alone(stage)
-            with learning(template, learnt):
-                groups: list[dict[str, object]] = [{"params": learnt, "weight_decay": settings.weight_decay}]
+            with gradients_for(template, parameters):
+                groups: list[dict[str, object]] = [{"params": parameters, "weight_decay": settings.weight_decay}]
                 loss = partial(_mean_loss, frames=len(observations.descriptors), schedule=schedule, run=own)
-                lesson.offsets = stage == STAGES[-1]
-                optimise(lesson, loss, schedule=schedule, parameters=groups, stage=stage, run=own)
+                template_loss.offsets = stage == STAGES[-1]
+                optimise(template_loss, loss, schedule=schedule, parameters=groups, stage=stage, run=own)
     return template.requires_grad_(False).eval()
 
 
-class _Lesson(nn.Module):
+class _TemplateLoss(nn.Module):
     """The template's loss over frames."""
 
     def __init__(
