@@ -185,7 +185,7 @@ def test_a_motion_that_is_too_short_is_a_problem_of_its_clip_alone(small_capture
     ("asked", "expected"), [(None, [3, 5]), (1, [4]), (3, [2, 4, 6]), (0, list(range(9))), (99, list(range(9)))]
 )
 def test_frames_are_spread_over_the_clip(small_capture: Capture, asked: int | None, expected: list[int]) -> None:
-    """Of 40 cameras and two clips, two frames of each clip make 160 views."""
+    """With 40 cameras and two clips, two frames of each clip make 160 views."""
     clip = replace(small_capture.clips[0], frames=9)
     many = replace(small_capture, cameras=small_capture.cameras * 10)
     assert chosen_frames(many, clip, asked) == expected
@@ -396,7 +396,7 @@ def test_a_camera_whose_frames_are_counted_otherwise_is_named(damaged: Capture, 
 
 @pytest.mark.parametrize("k1", [-0.2, 0.0])
 def test_a_distortion_that_was_left_out_is_named(small_capture: Capture, tmp_path: Path, k1: float) -> None:
-    """Of wide lenses, near enough that the person fills the image: elsewhere it does little."""
+    """With wide lenses, near enough that the person fills the image: elsewhere distortion changes little."""
     wide = tuple(
         replace(camera, focal=(50.0, 50.0), centre=(SIDE / 2, SIDE / 2), world_to_camera=nearer(camera))
         for camera in small_capture.cameras

@@ -84,7 +84,7 @@ def bind(skeleton: Skeleton) -> tuple[np.ndarray, np.ndarray]:
 
 
 def with_camera(glb: Glb) -> Glb:
-    """The same with a camera beside the body that the clip moves too."""
+    """The file with a camera beside the body, which the clip moves too."""
     nodes = glb.json["nodes"]
     nodes += [{"name": "Camera", "translation": [0, 50, 3]}, {"name": "RootNode", "children": [0, len(nodes)]}]
     glb.json["scenes"] = [{"nodes": [len(nodes) - 1]}]
@@ -93,7 +93,7 @@ def with_camera(glb: Glb) -> Glb:
 
 
 def with_face(glb: Glb) -> Glb:
-    """The same with a face that hangs rigidly on the head, as files of motion keep it for its expressions."""
+    """The file with a face that hangs rigidly on the head, as files of motion keep it for its expressions."""
     corners = np.array([[0, -8, 0], [5, -8, 0], [0, -8, 9]], float)
     glb.json["meshes"] = [{"primitives": [{"attributes": {"POSITION": glb.accessor(corners)}}]}]
     glb.json["nodes"].append({"mesh": 0, "name": "face"})

@@ -148,7 +148,7 @@ def test_character_is_turned_to_face_forward(degrees: int) -> None:
     assert bool(surfaces.notes) == (degrees > 60)
 
 
-def test_joints_with_numbers_behind_their_names_tell_left_from_right() -> None:
+def test_joints_with_numbers_behind_their_names_show_left_and_right() -> None:
     away = at(0, 0, 0, Rotation.from_euler("y", 180, degrees=True))
     names = ("hips_01", "spine_02", "head_03", "arm_l_04", "arm_r_05")
     assert any("turned by 180" in note for note in assemble(scene(node_names=names, rest=away @ BIND), HERE).notes)

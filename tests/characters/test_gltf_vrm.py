@@ -135,7 +135,7 @@ def test_bone_that_old_exporters_mark_as_missing_is_skipped(tmp_path: Path) -> N
 
 
 def test_humanoid_bones_have_the_roles_that_joint_names_are_given() -> None:
-    """Of either side alike."""
+    """On both sides alike."""
     said = {"hips": "hips", "upperChest": "spine", "leftToes": "left toe", "leftFoot": "left foot"}
     said |= {"rightLowerLeg": "right shin", "leftLittleDistal": "left pinky", "rightThumbProximal": "right thumb"}
     said |= {"leftShoulder": "left shoulder", "rightUpperArm": "right upper_arm", "rightLowerArm": "right forearm"}

@@ -29,7 +29,7 @@ def turned(skeleton: Skeleton, turn: Rotation) -> tuple[np.ndarray, np.ndarray]:
 
 
 def named(skeleton: Skeleton, old: str, new: str) -> Skeleton:
-    """The same skeleton with words of its names exchanged."""
+    """The skeleton with words of its names exchanged."""
     swapped = (name.replace(old, "?").replace(new, old).replace("?", new) for name in skeleton.names)
     return replace(skeleton, names=tuple(swapped))
 

@@ -51,7 +51,7 @@ def filmed(capture: Capture, tmp_path_factory: pytest.TempPathFactory) -> Filmed
 
 @pytest.fixture(scope="module")
 def both(filmed: Filmed) -> Filmed:
-    """Where nothing is held out of the clips."""
+    """The capture with all clips for training."""
     return replace(filmed, clips=(*filmed.clips, *filmed.held), held=())
 
 

@@ -126,7 +126,7 @@ def surfaces_of(folder: Path, count: int) -> MeasuredSurfaces:
 
 
 def test_a_surface_is_measured_by_the_size_of_the_figure(tmp_path: Path) -> None:
-    """Which decides how much the way that points face counts."""
+    """The size decides how much normals count beside distances."""
     avatar = synthetic_avatar()
     rig, large = avatar.rig, replace(avatar.rig, mesh=replace(avatar.rig.mesh, vertices=4 * avatar.rig.mesh.vertices))
     for own in (rig, large):

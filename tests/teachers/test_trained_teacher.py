@@ -42,7 +42,7 @@ ROUNDING = 1e-3  # of losses: sums in another order, which steps of Adam let gro
 
 
 class Killed(BaseException):
-    """What nothing catches."""
+    """Ends a run; nothing catches it."""
 
 
 def state(image_loss: ImageLoss) -> dict[str, torch.Tensor]:
@@ -238,7 +238,7 @@ def test_a_figure_that_stands_beside_its_pictures_is_moved_back() -> None:
 
 
 def test_a_refined_window_is_that_of_the_refined_poses() -> None:
-    """The root's heading too: it is taken back by the networks that say of folds."""
+    """The root's heading too, which the networks of folds remove."""
     clip, own = synthetic_avatar().clips[0], subject()
     poses = refinement(3.0, [[0] * 3, [2, 1, 0], [4, 3, 2]])
     skeleton = own.rig.skeleton

@@ -1,4 +1,4 @@
-"""The template learns from surfaces, outlines and tracks, and a killed training ends in the same bytes."""
+"""The template is trained on surfaces, outlines and tracks, and a killed training ends in the same bytes."""
 
 from collections.abc import Callable
 from dataclasses import replace

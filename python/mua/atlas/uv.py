@@ -144,7 +144,7 @@ def _note(
     kept: int,
     cut: int,
 ) -> str:
-    """What has become of the file's charts."""
+    """A sentence on what was done to the file's charts."""
     if not kept:
         return f"All {len(anew):,} triangles are cut into {cut} new UV charts."
     note = f"{kept} charts of the file's UV layout are kept, at one density of texels"

@@ -8,13 +8,13 @@ from mua.capture.camera_fit import OF_ALL, Fit, drawn, in_lens, in_place, in_tim
 from mua.capture.fit import Posed, Seen, by_camera, mean_overlap
 from mua.capture.outline import overlap
 
-POOR = 0.6  # of overlap, below which outline and mask are not of the same thing
-OUTLIER = 0.75  # of the median overlap, below which a view or camera stands apart from others
-BELOW = 0.05  # of overlap under the other cameras, from which on a camera is worth a look
-TRIED = 0.03  # the same, from which on it is asked what would make it fit
-GAIN = 0.1  # of overlap, by which another frame or camera must fit a mask better
-BETTER = 0.02  # of overlap, by which another moment or place must make a camera fit better
-BENT = 0.006  # the same for a lens, which bends little where the person is
+POOR = 0.6  # overlap below which outline and mask do not show the same thing
+OUTLIER = 0.75  # share of the median overlap below which a view or camera stands apart from others
+BELOW = 0.05  # overlap by which a camera that is worth a look lies below the others
+TRIED = 0.03  # overlap by which a camera lies below the others before causes are tried
+GAIN = 0.1  # overlap by which another frame or camera must fit a mask better
+BETTER = 0.02  # overlap by which another moment or place must make a camera fit better
+BENT = 0.006  # overlap by which another lens must fit better: it bends little where the person is
 
 
 def cameras_apart(posed: Posed, views: Sequence[Seen]) -> Iterator[str]:
@@ -79,7 +79,7 @@ def _moment(fit: Fit) -> str:
 
 
 def _camera_apart(posed: Posed, of: Sequence[Seen], views: Sequence[Seen], mean: float, typical: float) -> str:
-    """Whose images these may be: those of the camera whose calibration fits them best."""
+    """A sentence on a camera that fits badly, with the camera whose calibration fits its images best."""
     name, finding = of[0].camera.name, f"overlaps by {mean:.0%}, a camera typically by {typical:.0%}"
     others = {view.camera.name: view.camera for view in views if view.camera.size == of[0].camera.size}
     fits = {
@@ -93,7 +93,7 @@ def _camera_apart(posed: Posed, of: Sequence[Seen], views: Sequence[Seen], mean:
 
 
 def _view_apart(posed: Posed, view: Seen, middle: float) -> str:
-    """Which frame a mask may be of."""
+    """A sentence on a view that fits badly, with the frame that its mask fits best."""
     fits = [
         overlap(posed.covers(view.clip, frame, view.camera), view.mask)
         for frame in range(len(posed.vertices[view.clip]))

@@ -1,4 +1,4 @@
-"""What a capture is: cameras around a person, clips that they filmed, and where the files lie."""
+"""A capture: cameras around a person, clips that they filmed, and where the files lie."""
 
 import math
 from collections.abc import Sequence
@@ -119,14 +119,14 @@ class Capture:
         return every(self.moving(clip), self.steps)
 
     def moving(self, clip: str) -> Clip:
-        """The same motion with the poses between frames: `steps` from one frame to the next."""
+        """The motion of a clip with the poses between frames: `steps` from one frame to the next."""
         filmed = self.clip(clip)
         whole = self._poses(clip, self.steps)
         return cut_poses(whole, filmed.motion, first=filmed.first, frames=filmed.frames, steps=self.steps)
 
     @property
     def steps(self) -> int:
-        """From one frame to the next, so that poses are at least as close in time as those of a window."""
+        """Poses from one frame to the next, so that they are at least as close in time as those of a window."""
         return math.ceil(RATE / self.rate)
 
     def whole_motion(self, clip: str) -> Clip:

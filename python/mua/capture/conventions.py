@@ -1,4 +1,4 @@
-"""What calibrations of other tools mean differently: axes, units and directions, tried until the template fits."""
+"""Conventions of other tools' calibrations: axes, units and directions, tried until the template fits."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -39,7 +39,7 @@ class Convention:
 
     @property
     def count(self) -> int:
-        """How many things are different."""
+        """How many of the four differ from ours."""
         return self.inverse + self.opengl + (self.length != 1) + (not np.array_equal(self.world, np.eye(3)))
 
     def __str__(self) -> str:

@@ -1,4 +1,4 @@
-"""What cannot be right in a capture, from how the template fits the masks: a sentence each, most of all first."""
+"""Problems of a capture, by how the template fits the masks: a sentence for each."""
 
 from collections.abc import Iterator, Mapping, Sequence
 
@@ -14,16 +14,16 @@ from mua.capture.tracks import PointTracks, read_tracks
 from mua.errors import InputError
 
 GOOD = 0.8  # mean overlap that a skinned template reaches also with loose clothes
-SHIFT_GAIN = 0.03  # the same for all views of a clip together
+SHIFT_GAIN = 0.03  # overlap by which other poses must fit all views of a clip better
 FAR = 100.0  # metres from the template to cameras, beyond which lengths have another unit
 FARTHEST_SHIFT = 30  # frames by which images and poses may be apart
 BESIDE = 0.1  # of the template's height, beyond which tracked points are not on it
 TRACKED = 200  # points that are looked at
-TRIED = 6  # views that such shifts are tried on
+TRIED = 6  # views that shifts are tried on
 
 
 def unlikely(capture: Capture, posed: Posed, views: Sequence[Seen]) -> list[str]:
-    """All that is unlikely to be meant; where one thing explains all the rest, it alone."""
+    """All problems that were found; where one cause explains the others, it alone."""
     problems = list(_empty(views))
     filled = [view for view in views if view.mask.any()]
     inverted = _inverted(filled)
@@ -48,7 +48,7 @@ def unlikely(capture: Capture, posed: Posed, views: Sequence[Seen]) -> list[str]
 
 
 def remarks(views: Sequence[Seen], *, fits: bool) -> list[str]:
-    """What is possible but worth a look: masks without the person and, where all else `fits`, low overlaps."""
+    """Remarks on what is worth a look: masks without the person and, where all else `fits`, low overlaps."""
     filled = [view for view in views if view.mask.any()]
     found, mean = list(_sometimes_empty(views)), mean_overlap(filled)
     if not fits or not filled:

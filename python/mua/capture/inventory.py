@@ -20,7 +20,7 @@ def missing_files(capture: Capture) -> Iterator[str]:
 
 
 def _missing(capture: Capture, pattern: str, camera: str, what: str) -> Iterator[str]:
-    """What of one camera is missing."""
+    """Sentences on the files that one camera lacks."""
     wanted = {
         capture.place(pattern, clip=clip.name, camera=camera, frame=frame): (clip, frame)
         for clip in capture.clips

@@ -1,4 +1,4 @@
-"""Which points of a template 3D keypoints are of, by their names, and how long the person's limbs are."""
+"""Points of a template that 3D keypoints show, by the keypoints' names, and the lengths of the person's limbs."""
 
 import re
 from collections.abc import Sequence

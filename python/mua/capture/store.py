@@ -92,7 +92,7 @@ class ViewStore:
         return image.suffix.lower() in VIDEOS and image.is_file()
 
     def _place(self, clip: str, frame: int, camera: CaptureCamera) -> Path:
-        """Where a view is stored; the name tells all that it was made from."""
+        """Where a view is stored; its name changes with everything that the view is made from."""
         files = self._capture.files(clip, frame, camera.name)
         states = [path.stat() for path in (files.image, files.mask) if path is not None and path.is_file()]
         made_from = (

@@ -52,7 +52,7 @@ class MaskTrust:
 
 
 def _some(capture: Capture, overlap: Callable[[str, int, View], float]) -> Iterator[float]:
-    """Overlaps of a few views that are trained on; those that cannot be read are told where they are needed."""
+    """Overlaps of a few training views; those that cannot be read are left out, and reported where they are needed."""
     cameras = [camera for camera in capture.cameras if not camera.held_out]
     for clip in (clip for clip in capture.clips if not clip.held_out):
         for frame in chosen_frames(capture, clip, None):

@@ -93,7 +93,7 @@ def assemble(scene: Scene, path: Path, *, leave_out: Sequence[str] = ()) -> Surf
 
 
 def _without_outlines(scene: Scene, bind: Bind, mesh: _Mesh) -> tuple[Scene, Bind, _Mesh]:
-    """The same without parts of one colour that are shells of the others, wound inside out: splats would cover them."""
+    """The scene without outlines: one-coloured shells around other parts, wound inside out, that splats would draw."""
     sizes = [len(part.faces) for part in scene.parts]
     plain = [
         p

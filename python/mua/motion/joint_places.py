@@ -1,4 +1,4 @@
-"""What joints are by their places, where names say nothing: legs reach the floor, arms do not, both in pairs alike.
+"""Roles of joints by their places, where names say nothing: legs reach the floor, arms do not, both in pairs alike.
 
 Answered only where a pose is that of a body that stands upright on one pair of legs: a wrong guess would be worse than
 the question.
@@ -43,14 +43,14 @@ def roles_by_place(
     skeleton: Skeleton,
     poses: Array | None = None,  # [P, J, 3] places of the joints in frames of a motion
 ) -> dict[str, str]:
-    """Joint name to role (mua.pose.joint_names.ROLES); empty where the places do not tell."""
+    """Joint name to role (mua.pose.joint_names.ROLES); empty where the places do not show them."""
     if len(set(skeleton.names)) < len(skeleton.names):
         return {}
     return {skeleton.names[joint]: role for joint, role in sorted(joints_by_place(skeleton, poses).items())}
 
 
 def joints_by_place(skeleton: Skeleton, poses: Array | None = None) -> dict[int, str]:
-    """Joint to role by the bind pose; where that is no person who stands, by what most poses tell."""
+    """Joint to role by the bind pose; where that is no person who stands, by most of the poses."""
     _, bind = skeleton.world(skeleton.bind_rotations, skeleton.bind_translations)
     bends = bind[None] if poses is None else poses
     found = _by_pose(skeleton, bind, bends)

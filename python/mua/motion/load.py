@@ -65,7 +65,7 @@ def unique_names(clips: Sequence[Clip]) -> list[Clip]:
 
 
 def counted(notes: Sequence[str], clips: Sequence[Clip]) -> tuple[str, ...]:
-    """Every sentence once: where several clips bring the same, it says of how many instead of which."""
+    """Every sentence once; where several clips share one, it counts them instead of naming one."""
     names = {clip.name for clip in clips}
     by_sentence: dict[str, list[str]] = {}
     for note in notes:

@@ -68,7 +68,7 @@ def posed_calibrations(
 ) -> dict[int, Array]:
     """The rotation [4] from the target's bind world to the space of the moving joint, of every matched target joint.
 
-    Empty where hips and shoulders cannot be told.
+    Empty where hips and shoulders cannot be recognised.
     """
     bind = trunk_of({role: rest.target_at[ends[0]] for role in AROUND if (ends := rest.matches.ends(role)) is not None})
     trunk = trunk_of({role: at[:, ends[1]] for role in AROUND if (ends := rest.matches.ends(role)) is not None})

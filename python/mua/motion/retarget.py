@@ -60,7 +60,7 @@ def retarget(source: SourceMotion, target: Skeleton, matches: Matches, *, rate: 
 
 
 def _calibrations(rest: Rest, turned: Array, at: Array, rate: float) -> tuple[dict[int, Array], Array, bool]:
-    """C_t by target joint, W [4], and whether they come from the source's rest pose, which then tells heights too."""
+    """C_t by target joint, W [4], and whether they come from the source's rest pose, which then gives heights too."""
     upright = body_turn(rest)
     by_rest = rest_calibrations(rest, upright)
     honest = (stands(rest.source_places()) or _both_on_all_fours(rest)) and not _turned_otherwise(rest, turned, at)

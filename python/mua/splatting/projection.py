@@ -1,6 +1,6 @@
 """Splats to the screen of one camera in torch: the same ellipses, culling and order as mua.kernels.splat_project.
 
-Gradients reach everything, the camera's matrices as well; which splats are seen and in what order are taken as given.
+Gradients reach everything, the camera's matrices as well; which splats are seen, and their order, are taken as fixed.
 """
 
 from dataclasses import dataclass

@@ -30,7 +30,7 @@ class Sharpness:
     longer: Array  # [N] logarithm of the length along the line over that of a round surfel, 0 where there is no line
 
     def at(self, texels: Array) -> "Sharpness":
-        """That of some of the texels."""
+        """The values of some of the texels."""
         return Sharpness(self.spreads[texels], self.across[texels], self.longer[texels])
 
 
@@ -66,7 +66,7 @@ def _lines(
 ) -> tuple[Array, Array]:
     """Unit directions [S, S, 2] in which the colours change most, and how much more so than across them [S, S], 0..1.
 
-    Those of the structure tensor (Foerstner and Guelch 1987).
+    By the structure tensor (Foerstner and Guelch 1987).
     """
     smooth = gaussian_filter(colors, (SMOOTHING[0] * FINER, SMOOTHING[0] * FINER, 0), mode="wrap")
     down, right = np.gradient(smooth, axis=(0, 1))

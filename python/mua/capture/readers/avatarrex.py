@@ -134,7 +134,7 @@ def _square(value: Any, where: str) -> Array:
 
 
 def _patterns(source: Path, names: Sequence[str]) -> tuple[str, str]:
-    """Of images and masks, both as a camera has them that has any."""
+    """The patterns of images and masks, by the first layout of `FOLDERS` that has both."""
     for folders in FOLDERS:
         found = [numbered_pattern(source, folder, names) for folder in folders]
         if found[0] is not None and found[1] is None:

@@ -30,7 +30,7 @@ TESTS = "test"  # how the name of a folder begins that is held out
 
 @dataclass(frozen=True)
 class _Take:
-    """What all cameras filmed at once."""
+    """One recording by all cameras at once."""
 
     name: str
     folder: Path

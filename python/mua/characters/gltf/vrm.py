@@ -103,7 +103,7 @@ def _first_person(document: Document, vrm: dict[str, Any], where: str) -> tuple[
 
 
 def _credit(vrm: dict[str, Any]) -> list[str]:
-    """Who made the avatar and what they allow, as far as the file says it."""
+    """Author and licence of the avatar, as far as the file says them."""
     meta = vrm.get("meta")
     if not isinstance(meta, dict):
         return []

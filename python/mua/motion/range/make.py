@@ -118,7 +118,7 @@ def _rest(skeleton: Skeleton, clips: Sequence[Clip]) -> Clip:
 
 
 def _moved_by(clips: Sequence[Clip], joints: Array) -> list[int]:
-    """Those of `joints` that the clips turn."""
+    """The `joints` that the clips turn."""
     if not clips:
         return []
     turns = np.concatenate([clip.rotations for clip in clips])

@@ -1,8 +1,8 @@
 """Light on the simulated surface: a sky, a lamp and the shadow of near limbs, in the frame that the body faces.
 
 The light turns with the body's heading, so that a colour depends on the pose alone and a student that reads
-heading-normalised poses can learn it. Everything is smooth in normals and distances: the edge of a hard shadow
-would be finer than what a student holds.
+heading-normalised poses can show it. Everything is smooth in normals and distances: the edge of a hard shadow
+would be finer than what a student can show.
 """
 
 # mypy: disable-error-code="index, operator, attr-defined, no-untyped-def, var-annotated"

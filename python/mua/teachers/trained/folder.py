@@ -1,4 +1,4 @@
-"""What a taught teacher is on disk: the rig, the settings and the weights, and nothing of the capture."""
+"""A trained teacher on disk: the rig, the settings and the weights, and nothing of the capture."""
 
 import io
 import json
@@ -25,7 +25,7 @@ FORMAT, VERSION = "mua-teacher", 3
 
 @dataclass(frozen=True)
 class Description:
-    """What teacher.json says."""
+    """The content of teacher.json."""
 
     name: str  # of the person
     settings: TeacherSettings
@@ -34,7 +34,7 @@ class Description:
 
 
 def save_teacher(folder: Path, model: TeacherModel, description: Description) -> None:
-    """Write a teacher; teacher.json comes last, so that a folder which holds it is whole."""
+    """Write a teacher; teacher.json comes last, so that a folder that holds it is complete."""
     write_rig(folder / RIG, model.rig)
     content = io.BytesIO()  # an archive in a file would hold its temporary name, another one in each process
     torch.save({name: tensor.cpu() for name, tensor in model.state_dict().items()}, content)
@@ -57,7 +57,7 @@ def load_teacher(folder: Path) -> tuple[TeacherModel, Description]:
 
 
 def teacher_bytes(folder: Path) -> Iterator[bytes]:
-    """What a teacher's frames depend on, besides the motion."""
+    """The files' bytes that a teacher's frames depend on, besides the motion."""
     for name in (FILE, WEIGHTS):
         yield (folder / name).read_bytes()
 

@@ -1,4 +1,4 @@
-"""What a teacher is trained to: images like those of the cameras (paper, Preliminaries)."""
+"""The loss of a teacher's training: its images against those of the cameras (paper, Preliminaries)."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ Perceptual = Callable[[Tensor, Tensor], Tensor]  # of two images [1, 3, H, W] in
 
 @dataclass(frozen=True, eq=False)
 class Material:
-    """What a training has of a person; windows are those of the frames of `views`."""
+    """Training data of a person; `windows` holds one window for each frame of `views`."""
 
     views: Views
     windows: Sequence[Window]
@@ -33,7 +33,7 @@ class Material:
 
 
 class ImageLoss(nn.Module):
-    """The teacher with what is learnt beside it and needed in training alone."""
+    """The mean loss over views, with the parameters that are trained beside the teacher's own."""
 
     def __init__(
         self,
@@ -46,7 +46,7 @@ class ImageLoss(nn.Module):
         super().__init__()
         self.teacher = teacher
         self.correction = ColourCorrection(material.views.cameras)
-        self.colour_correction = settings.colour_correction  # or it stays none
+        self.colour_correction = settings.colour_correction  # False: it stays zero
         self.looks = nn.Parameter(torch.zeros(material.views.frames, settings.code))
         self.refinement = refinement
         self._material, self._weights, self._rasteriser = material, settings.weights, settings.rasteriser
@@ -67,7 +67,7 @@ class ImageLoss(nn.Module):
         return torch.stack(losses).sum() / len(rows)
 
     def window(self, frame: int) -> Window:
-        """The window of a frame, its poses refined where they are learnt.
+        """The window of a frame, with refined poses where poses are refined.
 
         Descriptors stay those of the given poses, on which the template was trained.
         """
@@ -80,7 +80,7 @@ class ImageLoss(nn.Module):
 
     @torch.no_grad()
     def keep_mean_look(self) -> None:
-        """Give the teacher the mean of the looks: what it shows of any motion."""
+        """Give the teacher the mean of the frames' looks, which it shows in any motion."""
         self.teacher.look.copy_(self.looks.mean(dim=0))
 
     def _of_frame(self, index: int, views: Sequence[tuple[int, Tensor]], *, moving: bool) -> Tensor:
@@ -120,7 +120,7 @@ class ImageLoss(nn.Module):
         return self._weights.tracks / (UNIT * self._size) ** 2 * error
 
     def _restraint(self, frame: Frame, index: int) -> Tensor:
-        """Keeps what images do not decide near nothing."""
+        """Regularisation: keeps near zero what the images do not determine."""
         loss = self._weights.residual * frame.added[:, GEOMETRY].square().mean()
         beside = self.looks[index].square().sum()
         if self.refinement is not None:

@@ -1,4 +1,4 @@
-"""What every training of a teacher shares: which parameters learn, and sums that a run which goes on repeats."""
+"""Shared by all training of teachers: which parameters get gradients, and sums that a resumed run repeats."""
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -19,7 +19,7 @@ def gradients_for(module: nn.Module, parameters: Sequence[nn.Parameter]) -> Iter
 
 @contextmanager
 def deterministic() -> Iterator[None]:
-    """Sums in one order, where torch has one: a run that goes on adds up the same numbers."""
+    """Sums in one order, where torch has one: a resumed run adds up the same numbers."""
     before = torch.are_deterministic_algorithms_enabled()
     torch.use_deterministic_algorithms(True, warn_only=True)
     try:

@@ -1,4 +1,4 @@
-"""How a training looks: images of a camera that it does not learn from, beside the teacher's."""
+"""Previews of a training: images of a camera that it is not trained on, beside the teacher's."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

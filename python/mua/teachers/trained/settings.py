@@ -20,7 +20,7 @@ class LossWeights:
     tracks: float = 0.02  # of tracked points' squared distance in centimetres on a person, where there are tracks
     residual: float = 1e-3  # of the square of what the networks add to the geometry, in `texels.UNITS`
     beside: float = 1e-2  # of the square of frames' codes and of the refinement of poses
-    correction: float = 0.1  # of the square of what a camera's colours differ from those of the others
+    correction: float = 0.1  # of the squared difference of a camera's colours from the others'
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class TeacherSettings:
     rows: int  # of a whole image, at most
     mean: Schedule  # of the mean texture
     texture: Schedule  # of the networks
-    window: int = 3  # k, poses that a frame is told from
+    window: int = 3  # k, the poses that a frame depends on
     code: int = 0  # numbers of a frame's look, for one pose that looks several ways; 0: looks differ by pose alone
     refine: float = 0.0  # degrees by which a joint of a frame may be turned to fit the images
     colour_correction: bool = True  # whether cameras may differ in colour

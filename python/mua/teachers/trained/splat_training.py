@@ -1,4 +1,4 @@
-"""The training of a teacher: the mean texture first, then what motion changes; a killed run ends in the same bytes."""
+"""The training of a teacher: the mean texture first, then what motion changes; a resumed run ends in the same bytes."""
 
 from collections.abc import Callable
 from functools import partial
@@ -14,12 +14,12 @@ from mua.training.optimise import Run, optimise
 MEAN, TEXTURE = "mean texture", "texels"
 STAGES = (MEAN, TEXTURE)
 CHECKPOINT_STEPS = 50  # a step takes up to seconds
-# Learning rates over that of the networks: of numbers that each touch a texel, a frame or a camera alone.
+# Learning rates over that of the networks, of parameters that each affect a single texel, frame or camera.
 STILL_RATE, LIGHT_RATE, BESIDE_RATE = 60.0, 20.0, 1.0
 
 
 def train_teacher(image_loss: ImageLoss, material: Material, settings: TeacherSettings, *, run: Run) -> None:
-    """Train the teacher of `image_loss` in place; what is kept in the checkpoints of `run` is not trained again."""
+    """Train the teacher of `image_loss` in place, from the last checkpoint of `run` on."""
     with deterministic():
         own = run.alone(MEAN)
         with gradients_for(image_loss, [image_loss.teacher.mean]):
@@ -46,7 +46,7 @@ def train_teacher(image_loss: ImageLoss, material: Material, settings: TeacherSe
 
 
 def _rates(image_loss: ImageLoss) -> list[tuple[list[nn.Parameter], float]]:
-    """What the networks' training learns, and its learning rate over theirs."""
+    """Parameters trained with the networks, each group with its learning rate over that of the networks."""
     teacher = image_loss.teacher
     beside = [image_loss.correction.change] if image_loss.colour_correction else []
     beside += [image_loss.looks] if image_loss.looks.numel() else []
@@ -67,6 +67,6 @@ def _loss(model: Callable[..., Tensor], *, material: Material, batch: int, run: 
     processes = run.processes
     own = slice(processes.rank, None, processes.count)
     count = len(rows[own])
-    if not count:  # fewer views than processes: one that counts nothing
+    if not count:  # fewer views than processes: a loss of zero
         return 0 * model(rows[:1], backgrounds[:1], moving)
     return model(rows[own], backgrounds[own], moving) * (count * processes.count / len(rows))

@@ -1,7 +1,7 @@
 """The training of the drivable template: first the nodes' motion, then the vertices' offsets beside it.
 
-What was seen of each frame decides: a surface, outlines, tracked points, or several of these. A killed run goes on
-from its last checkpoint and ends in the same bytes.
+The loss compares with what was observed of each frame: a surface, outlines, tracked points, or several of these. A
+killed run resumes from its last checkpoint and ends in the same bytes.
 """
 
 from collections.abc import Callable, Sequence
@@ -59,7 +59,7 @@ class TemplateSettings:
 
 @dataclass(frozen=True, eq=False)
 class Observed:
-    """What was seen of one frame."""
+    """Observations of one frame."""
 
     cloud: Cloud | None = None
     outlines: Sequence[Outline] = ()
@@ -80,7 +80,7 @@ class Observations(Protocol):
         ...
 
     def observe(self, frame: int, generator: torch.Generator) -> Observed:
-        """What was seen of a frame; where that is a choice, as of cameras, the generator makes it."""
+        """What was observed of a frame; choices, such as of cameras, are drawn from the generator."""
         ...
 
 
@@ -100,7 +100,7 @@ def training_run(
     device: torch.device | None = None,
     processes: Processes = ALONE,
 ) -> Run:
-    """What the stages of this training share; its key tells it from others in the same directory."""
+    """The run that the stages of this training share; its key distinguishes it from others in the same directory."""
     key = run_key((settings, encoding), [observations.descriptors, observations.joints])
     return Run(
         torch.Generator().manual_seed(settings.seed),
@@ -183,7 +183,7 @@ class _TemplateLoss(nn.Module):
         return loss
 
     def _restraint(self, deformation: MotionDeformation, deformed: Deformed) -> Tensor:
-        """Keeps the deformation smooth: what lies side by side moves alike."""
+        """Regularisation: neighbours move alike."""
         weights = self._weights
         rigid = deformation.graph.unlike(deformed.turns, deformed.moves)
         smooth = roughness(deformed.offsets, self._edges)
@@ -197,6 +197,6 @@ def _mean_loss(model: Callable[..., Tensor], *, frames: int, schedule: Schedule,
     seeds = torch.randint(SEEDS, (schedule.batch,), generator=run.generator)
     own = slice(run.processes.rank, None, run.processes.count)
     count = len(drawn[own])
-    if not count:  # fewer frames than processes: one that counts nothing
+    if not count:  # fewer frames than processes: a loss of zero
         return 0 * model(drawn[:1], seeds[:1])
     return model(drawn[own], seeds[own]) * (count * run.processes.count / len(drawn))

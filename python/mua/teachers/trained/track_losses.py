@@ -1,4 +1,4 @@
-"""How far points of the template, and the splats that carry them, are from where they were followed to in a frame."""
+"""Distance of the template's points, and of the splats that carry them, from where they were tracked in a frame."""
 
 from dataclasses import dataclass
 
@@ -61,7 +61,7 @@ def missed(
     *,
     reach: float,  # metres
 ) -> Tensor:
-    """The same of points wherever they are; of those seen by one camera, from the ray."""
+    """The same loss for points anywhere; a point seen by one camera counts its distance from the ray."""
     tiny = torch.finfo(points.dtype).tiny
     apart = points - tracks.points
     if tracks.directions is not None:
