@@ -102,7 +102,7 @@ def _keep(source: _Source) -> _Layout:
 
 
 def _trouble(source: _Source, layout: _Layout) -> str | None:
-    """What a layout loses, as the end of a sentence; None where that is little."""
+    """What a layout loses, as the end of a sentence; None where it loses little."""
     if not source.present.all():
         return f"{np.count_nonzero(~source.present):,} of its {len(source.present):,} triangles have no UVs"
     owner, claims = cover(layout.corners * JUDGED_SIZE, JUDGED_SIZE)

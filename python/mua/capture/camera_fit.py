@@ -60,7 +60,7 @@ def drawn(posed: Posed, views: Sequence[Seen], count: int = TRIED) -> list[Drawn
 
 
 def in_time(posed: Posed, views: Sequence[Seen]) -> Fit | None:
-    """By how many frames later the poses of one camera's images are; None where too few can be compared."""
+    """The shift in frames at which poses fit one camera's images best; None where too few can be compared."""
     found = []
     for shift in (shift for shift in range(-LATER, LATER + 1) if shift):
         own = [view for view in views if 0 <= view.frame + shift < len(posed.vertices[view.clip])]

@@ -58,7 +58,7 @@ class Capture:
 
     @property
     def file(self) -> Path:
-        """What describes the capture."""
+        """The capture.json that describes the capture."""
         return self.folder / CAPTURE
 
     def camera(self, name: str) -> CaptureCamera:
@@ -83,7 +83,7 @@ class Capture:
         crop: bool = False,
         rows: int | None = None,
     ) -> View:
-        """What a camera saw of a frame, without distortion: image, mask, background and the pinhole that fits them.
+        """A camera's view of a frame, without distortion: image, mask, background and the pinhole that fits them.
 
         With `crop` only the box around the mask and a margin; with `rows` as if the whole image had so many rows.
         Errors: InputError with one sentence that names the file where an image is missing or is not the camera's.
@@ -94,7 +94,7 @@ class Capture:
         return read_view(self.files(clip, frame, camera), seen, crop=crop, rows=rows)
 
     def files(self, clip: str, frame: int, camera: str) -> Files:
-        """Where a view's images lie."""
+        """The files of a view's images."""
         image, mask, background = (
             None if pattern is None else self.place(pattern, clip=clip, camera=camera, frame=frame)
             for pattern in (self.images, self.masks, self.backgrounds)

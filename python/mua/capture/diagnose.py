@@ -154,7 +154,7 @@ def _shifted(capture: Capture, posed: Posed, views: Sequence[Seen]) -> Iterator[
 
 
 def _best_shift(capture: Capture, posed: Posed, views: Sequence[Seen]) -> tuple[int, float]:
-    """By how many frames later poses fit some views of one clip best, and their overlap then."""
+    """The shift in frames at which later poses fit some views of one clip best, and their overlap then."""
     clip, motion = capture.clip(views[0].clip), capture.whole_motion(views[0].clip)
     last = len(motion) - clip.first - clip.frames
     shifts = range(max(-FARTHEST_SHIFT, -clip.first), min(FARTHEST_SHIFT, last) + 1)

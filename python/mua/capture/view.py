@@ -1,4 +1,4 @@
-"""What one camera saw of one frame: read, undistorted, cut to the person, made smaller."""
+"""The view of one frame by one camera: read, undistorted, cut to the person, made smaller."""
 
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -21,7 +21,7 @@ Box = tuple[int, int, int, int]  # left, upper, right, lower edge in pixels
 
 @dataclass(frozen=True)
 class Files:
-    """Where a view's images lie; `number` is its frame where they are videos."""
+    """The files of a view's images; `number` is its frame where they are videos."""
 
     image: Path
     mask: Path | None  # None: the alpha of the image
@@ -51,7 +51,7 @@ class View:
 
 @dataclass(frozen=True, eq=False)
 class Filmed:
-    """What a camera took of one frame, with its distortion."""
+    """One frame as its camera took it, with distortion."""
 
     image: Array  # [H, W, 3] uint8 sRGB
     mask: Array  # [H, W, 1] uint8
@@ -120,7 +120,7 @@ def look(
     small: CaptureCamera,  # the same for a smaller image
     box: Box,  # of the smaller image
 ) -> Array:
-    """What a pinhole would have seen in a box, [h, w, C] float32 in 0..1."""
+    """The image that a pinhole would have seen in a box, [h, w, C] float32 in 0..1."""
     (left, upper, right, lower), scale = box, np.array(camera.size) / small.size
     columns, rows = np.arange(left, right + 1) * scale[0], np.arange(upper, lower + 1) * scale[1]
     reach = (int(columns[0]), int(rows[0]), int(np.ceil(columns[-1])), int(np.ceil(rows[-1])))

@@ -1,4 +1,4 @@
-"""From the pieces that a scene file holds to one surface on one rigid skeleton; shared by all readers."""
+"""Merges the pieces of a scene file to one surface on one rigid skeleton; shared by all readers."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

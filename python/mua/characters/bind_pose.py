@@ -192,7 +192,7 @@ def _moved_with(scene: Scene, skin: Skin, mass: Array, bound: dict[int, Array], 
 
 
 def _spaces(scene: Scene, skin: Skin, mass: Array) -> tuple[Array, Array]:
-    """Where each joint with weights would put the mesh at rest [n, 4, 4], and which [n] of the skin's joints it is."""
+    """The spaces [n, 4, 4] in which joints with weights put the mesh at rest, and these [n] among the skin's joints."""
     used = np.flatnonzero(mass)
     return scene.rest[skin.joints[used]] @ skin.inverse_binds[used], used
 

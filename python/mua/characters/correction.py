@@ -17,7 +17,7 @@ UNITS = (0.01, 0.001, 100.0)  # centimetres or millimetres taken for metres, met
 ADULT = 1.75  # metres: what a figure is made whose file says nothing that is possible
 FLAT = 1e-3  # of the length: what is lower than this has no height to judge
 LYING = 0.2  # of its length: what a creature that creeps counts as high
-SIDES = (  # how names say left, and what stands there for right
+SIDES = (  # patterns of left in names, and what replaces them for right
     ("left", "right"),
     ("Left", "Right"),
     ("LEFT", "RIGHT"),
@@ -32,11 +32,11 @@ FACING = 0.5  # cosine between a character's front and +Z below which it is turn
 
 @dataclass(frozen=True)
 class Correction:
-    """What was changed, with a sentence for each change."""
+    """The changes, with a sentence for each."""
 
     unit: float  # metres as which one metre of the file is taken
     size_notes: tuple[str, ...]
-    notes: tuple[str, ...]  # of all else
+    notes: tuple[str, ...]  # all other changes
 
 
 def corrected(

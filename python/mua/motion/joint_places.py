@@ -62,7 +62,7 @@ def joints_by_place(skeleton: Skeleton, poses: Array | None = None) -> dict[int,
 
 
 def _by_pose(skeleton: Skeleton, at: Array, bends: Array) -> dict[int, str]:
-    """By the places [J, 3] in one pose, and where limbs bend in several [P, J, 3]."""
+    """Joint to role by the places [J, 3] in one pose, and by where limbs bend in several [P, J, 3]."""
     height = float(np.ptp(at[:, 1]))
     if height <= 0:
         return {}
@@ -159,7 +159,7 @@ def _ahead(at: Array, legs: list[Parts], height: float) -> Array:
 
 
 def _neck_and_head(skeleton: Skeleton, at: Array, arm: _Limbs, found: dict[int, str]) -> dict[int, str]:
-    """What goes up from where the arms are: the last joint that carries another, or the only one, is the head."""
+    """The joints that go up from the arms: the last one that carries another, or the only one, is the head."""
     branches = [
         int(joint)
         for joint in np.flatnonzero(skeleton.parents == arm.trunk)

@@ -104,7 +104,7 @@ def _calibration(frames: _Frames, joint: int, role: str, found: dict[int, Array]
 
 
 def _of_trunk(frames: _Frames, joint: int, role: str) -> Array | None:
-    """By up and left, that of the hips below and that of the shoulders above."""
+    """Calibration of a joint of the trunk by up and by left: that of the hips below, that of the shoulders above."""
     chain = frames.rest.matches.roles[role]
     share = 0.0 if role == "hips" else (chain.index(joint) + 1) / len(chain)
     left = (1 - share) * frames.trunk.hips + share * frames.trunk.chest
@@ -115,7 +115,7 @@ def _of_trunk(frames: _Frames, joint: int, role: str) -> Array | None:
 
 
 def _of_upper(frames: _Frames, joint: int, side: str, part: str, found: dict[int, Array]) -> Array | None:
-    """By the bone and the axis on which elbow or knee bends."""
+    """Calibration of an upper arm or thigh by its bone and by the axis on which elbow or knee bends."""
     bones = frames.bone(f"{side} {part}", f"{side} {UPPER[part]}")
     if bones is None:
         return None
@@ -131,6 +131,7 @@ def _of_upper(frames: _Frames, joint: int, side: str, part: str, found: dict[int
 
 
 def _of_lower(frames: _Frames, joint: int, side: str, part: str, found: dict[int, Array]) -> Array | None:
+    """Calibration of a forearm or shin, as `_of_upper`."""
     upper, end = LOWER[part]
     above, bones = frames.bone(f"{side} {upper}", f"{side} {part}"), frames.bone(f"{side} {part}", f"{side} {end}")
     if above is None or bones is None:
@@ -144,7 +145,7 @@ def _of_lower(frames: _Frames, joint: int, side: str, part: str, found: dict[int
 
 
 def _at_ease(frames: _Frames, side: str, part: str) -> tuple[Array, Array]:
-    """In the bind pose's world: where a limb points that hangs from legs or is held level, and what it bends about."""
+    """Where a limb at ease points in the bind pose's world (legs hang, arms are level), and the axis it bends about."""
     if part == "thigh":
         return -frames.bind.up, frames.bind.hips
     outward = frames.bind.chest if side == "left" else -frames.bind.chest
@@ -152,7 +153,7 @@ def _at_ease(frames: _Frames, side: str, part: str) -> tuple[Array, Array]:
 
 
 def _of_foot(frames: _Frames, joint: int, side: str, found: dict[int, Array]) -> Array | None:
-    """By the sole, level while it stands; by the bone to the toe where no sole stands, or stands on something else."""
+    """Calibration of a foot by its sole, level while it stands; by the bone to the toe where none is on the floor."""
     bones, ends = frames.bone(f"{side} foot", f"{side} toe"), frames.rest.matches.ends(f"{side} toe")
     if bones is None or ends is None:
         return None
@@ -170,7 +171,7 @@ def _of_foot(frames: _Frames, joint: int, side: str, found: dict[int, Array]) ->
 
 
 def _of_head(frames: _Frames, joint: int, found: dict[int, Array]) -> Array:
-    """As on average relative to the neck, but upright where a bone shows which way the skull stands."""
+    """Calibration of the head as on average relative to the neck, but upright where a bone shows the skull."""
     base = _as_above(frames, joint, found)
     ends = np.flatnonzero(frames.rest.source.parents == frames.rest.matches.chains[joint][1])
     if len(ends) != 1:
@@ -181,7 +182,7 @@ def _of_head(frames: _Frames, joint: int, found: dict[int, Array]) -> Array:
 
 
 def _of_finger(frames: _Frames, joint: int, role: str, found: dict[int, Array]) -> Array | None:
-    """As the joint above, its bone laid along the source's."""
+    """Calibration of a finger as of the joint above, with its bone laid along the source's."""
     chain = frames.rest.matches.roles[role]
     after = chain.index(joint) + 1
     if after >= len(chain) or chain[after] not in frames.rest.matches.chains:
@@ -195,7 +196,7 @@ def _of_finger(frames: _Frames, joint: int, role: str, found: dict[int, Array]) 
 
 
 def _as_above(frames: _Frames, joint: int, found: dict[int, Array]) -> Array:
-    """As in the bind pose relative to the part above, on average over upright frames."""
+    """Calibration as in the bind pose relative to the part above, on average over upright frames."""
     own = rotation.conjugate(frames.moving(joint))
     return _mean(rotation.multiply(own, _world(frames, joint, found))[frames.upright])
 

@@ -55,7 +55,7 @@ def project(
     eye: Eye,
     bounds: torch.Tensor,  # [2, 3] world box over which depth is keyed
 ) -> Quads:
-    """What the camera sees, front to back."""
+    """The quads that the camera sees, front to back."""
     near = eye.projection.detach()[2, 3] / -2
     shapes, before = _shapes(splats, eye, near)
     with torch.no_grad():

@@ -30,7 +30,7 @@ STILL = np.radians(1)  # a joint whose rotation varies less in all clips is not 
 
 
 def motion_range(character: Character, clips: Sequence[Clip], *, frames: int, seed: int) -> list[Clip]:
-    """What the character's joints can do, as much of it as `frames` that are recorded show; the seed says which.
+    """Clips of what the character's joints can do, as many as `frames` recorded frames show; the seed chooses them.
 
     Joints that it does not move, and bones whose length the `clips` of the user set, are as these have them on the
     average.

@@ -1,4 +1,4 @@
-"""What a person does, pose by pose: walks, reaches, kicks, bends, and what is done on the floor."""
+"""The moves of a person, pose by pose: walking, reaching, kicking, bending, and moves on the floor."""
 
 from collections.abc import Sequence
 from dataclasses import replace

@@ -23,7 +23,7 @@ SKY_COLOR = np.array([0.42, 0.46, 0.52])
 GROUND_COLOR = np.array([0.20, 0.18, 0.16])
 WRAP = 0.4  # how far the lamp reaches around the terminator: it is large and near
 DISPLAY_GAMMA = 2.2  # textures and splat colours are display values
-SHADOW = 0.85  # of the light, that a bone hides when it fills the view along the normal
+SHADOW = 0.85  # share of the light that a bone hides when it fills the view along the normal
 SHEEN = 0.10  # display value at the centre of the lamp's reflection
 
 start()

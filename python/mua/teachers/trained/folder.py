@@ -39,8 +39,8 @@ def save_teacher(folder: Path, model: TeacherModel, description: Description) ->
     content = io.BytesIO()  # an archive in a file would hold its temporary name, another one in each process
     torch.save({name: tensor.cpu() for name, tensor in model.state_dict().items()}, content)
     write_bytes(folder / WEIGHTS, content.getvalue())
-    said = {"format": FORMAT, "version": VERSION, **asdict(description)}
-    write_bytes(folder / FILE, (json.dumps(said, indent=1) + "\n").encode())
+    fields = {"format": FORMAT, "version": VERSION, **asdict(description)}
+    write_bytes(folder / FILE, (json.dumps(fields, indent=1) + "\n").encode())
 
 
 def load_teacher(folder: Path) -> tuple[TeacherModel, Description]:
@@ -64,19 +64,19 @@ def teacher_bytes(folder: Path) -> Iterator[bytes]:
 
 def _described(file: Path) -> Description:
     try:
-        said: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
-        if (said["format"], said["version"]) != (FORMAT, VERSION):
+        fields: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
+        if (fields["format"], fields["version"]) != (FORMAT, VERSION):
             raise InputError(
-                f"{file}: format is {said['format']!r}, version {said['version']!r}; expected {FORMAT!r}, {VERSION}; "
-                "mua-teach trains it again"
+                f"{file}: format is {fields['format']!r}, version {fields['version']!r}; "
+                f"expected {FORMAT!r}, {VERSION}; mua-teach trains it again"
             )
-        own, encoding = dict(said["settings"]), dict(said["encoding"])
+        own, encoding = dict(fields["settings"]), dict(fields["encoding"])
         own["weights"] = LossWeights(**own["weights"])
         for name in ("mean", "texture"):
             own[name] = Schedule(**own[name])
         for name in ("joints", "translated"):
             encoding[name] = tuple(encoding[name])
-        return Description(str(said["name"]), TeacherSettings(**own), PoseEncoding(**encoding), dict(said["roles"]))
+        return Description(str(fields["name"]), TeacherSettings(**own), PoseEncoding(**encoding), dict(fields["roles"]))
     except FileNotFoundError as error:
         raise InputError(f"{file.parent}: holds no {FILE}; expected the folder that mua-teach wrote") from error
     except (OSError, ValueError, KeyError, TypeError) as error:

@@ -21,7 +21,7 @@ class Light(nn.Module):
         self,
         normals: Tensor,  # [N, 3] world, unit
     ) -> Tensor:
-        """What colours [N, 3] are multiplied by."""
+        """The factors [N, 3] of colours."""
         x, y, z = normals.unbind(-1)
         terms = [x, y, z, x * y, y * z, z * x, x * x - y * y, (3 * z * z - 1) / 2]
         return (1 + torch.stack(terms, dim=-1) @ self.gains).clamp(min=0)

@@ -53,7 +53,7 @@ class PoseRefinement(nn.Module):
         self,
         joints: Tensor,  # [J, 8] bind pose to world
     ) -> Tensor:
-        """Where the root is, [3], metres."""
+        """The root's position [3], metres."""
         return dual_transform(joints[self.root], self.rest)
 
     def back(
@@ -70,7 +70,7 @@ class PoseRefinement(nn.Module):
         return self.turns.square().mean() + self.moves.square().mean()
 
     def _skinning(self, rotations: Tensor, translations: Tensor) -> Tensor:
-        """As `mua.pose.skeleton.Skeleton.skinning`."""
+        """Dual quaternions as `mua.pose.skeleton.Skeleton.skinning` gives them, with gradients."""
         turned: list[Tensor] = []
         placed: list[Tensor] = []
         for joint, parent in enumerate(self.parents):

@@ -34,14 +34,14 @@ UNIT = 0.01  # metres on a person: an error of 1 in every term that is a length
 
 @dataclass(frozen=True)
 class TemplateWeights:
-    """What each term counts; lengths are in squares of UNIT."""
+    """The weight of each term of the loss; lengths are in squares of UNIT."""
 
     surface: float = 1.0
     tracks: float = 1.0
-    silhouette: float = 100.0  # of the square of the difference in coverage, over what the mask covers
-    rigid: float = 0.1  # of nodes from where neighbours would carry them
-    smooth: float = 1.0  # of the offsets at both ends of an edge
-    offset: float = 0.05  # of the offsets themselves
+    silhouette: float = 100.0  # squared difference in coverage, over what the mask covers
+    rigid: float = 0.1  # distance of nodes from where neighbours would carry them
+    smooth: float = 1.0  # difference of the offsets at both ends of an edge
+    offset: float = 0.05  # length of the offsets
 
 
 @dataclass(frozen=True)

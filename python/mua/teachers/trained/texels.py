@@ -72,7 +72,7 @@ class SurfaceTextures(nn.Module):
 
 
 class TexelNets(nn.Module):
-    """From the posed template to what its motion adds to raw channels."""
+    """Networks from the posed template to what its motion adds to raw channels."""
 
     units: Tensor  # [23]
 

@@ -40,7 +40,7 @@ class TexelTracks:
         return missed(self.places(posed, splats, offsets), self.tracks, reach=REACH * size)
 
     def places(self, posed: Tensor, splats: TorchSplats, offsets: Tensor) -> Tensor:
-        """Where the texels have the points [P, 3], world, metres; arguments as above."""
+        """The points [P, 3] as the texels carry them, world, metres; arguments as above."""
         turns, own = (values.index_select(0, self.texels) for values in (splats.turns, offsets))
         return _on(posed, self.tracks) + rotate(turns, own)
 
@@ -72,5 +72,5 @@ def missed(
 
 
 def _on(posed: Tensor, tracks: Tracks) -> Tensor:
-    """Where the template has the points, [P, 3]."""
+    """The points [P, 3] on the posed template."""
     return (tracks.barycentrics.to(posed)[..., None] * gather(posed, tracks.corners)).sum(1)
