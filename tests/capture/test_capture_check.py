@@ -192,7 +192,7 @@ def test_frames_are_spread_over_the_clip(small_capture: Capture, asked: int | No
 
 
 def test_an_outline_covers_what_splats_do(small_capture: Capture) -> None:
-    """Against point-in-triangle at every pixel's middle, by signed areas."""
+    """Compares with point-in-triangle tests at every pixel's middle, by signed areas."""
     rng = np.random.default_rng(4)
     camera = small_capture.cameras[0]
     vertices = rng.normal([0, 0.85, 0], [0.5, 0.5, 0.3], (12, 3))
@@ -354,7 +354,7 @@ def test_inverted_masks_are_named(damaged: Capture, camera: str, named: str) -> 
 
 
 def test_a_camera_that_is_two_centimetres_off_is_named(small_capture: Capture) -> None:
-    """By how far, too: nothing else is said of the others."""
+    """The sentence says by how far; the other cameras get none."""
     front, left, *others = small_capture.cameras
     matrix = left.world_to_camera.copy()
     matrix[:2, 3] += 0.014, -0.014

@@ -58,7 +58,7 @@ def test_scales_of_joints_leave_the_pose_alone(scale: tuple[float, float, float]
 
 @pytest.mark.parametrize(("scale", "about"), [((2.0, 1.5, 0.5), 0), ((1.03, 1, 0.98), 0), ((2.0, 1.5, 0.5), 40)])
 def test_scale_added_after_binding_is_folded_into_the_mesh(scale: tuple[float, ...], about: float) -> None:
-    """Also a small one, and one along axes that are not the joint's."""
+    """Tries a small scale, too, and one along axes that are not the joint's."""
     turn = at(0, 0, 0, Rotation.from_euler("xyz", [about, about / 2, about], degrees=True))
     stretch = turn @ np.diag([*scale, 1]) @ turn.T
     bigger_head = BIND.copy()

@@ -32,7 +32,7 @@ def test_a_transform_scales_first_then_turns_then_moves() -> None:
 
 @pytest.mark.parametrize("start", [0.0, 2.0])
 def test_a_clip_begins_with_its_first_key_and_ends_with_its_last(tmp_path: Path, start: float) -> None:
-    """Also where the last one is a frame's time but for what float32 takes off."""
+    """This holds where rounding to float32 puts the last key just before a frame's time."""
     glb = body()
     animate(glb, 1, "rotation", times=[start, start + 0.7], values=HALF_TURN)
     (clip,) = read(glb, tmp_path).clips

@@ -107,7 +107,7 @@ def test_material_that_reads_colours_of_points_gets_them(plain: Path) -> None:
 
 
 def box(stage: Usd.Stage, path: str) -> UsdGeom.Mesh:
-    """A triangle of 10 units."""
+    """A triangle with sides of 10 units."""
     mesh = UsdGeom.Mesh.Define(stage, path)
     mesh.CreatePointsAttr([Gf.Vec3f(0, 0, 0), Gf.Vec3f(10, 0, 0), Gf.Vec3f(0, 0, 10)])
     mesh.CreateFaceVertexCountsAttr([3])

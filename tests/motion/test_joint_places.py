@@ -19,7 +19,7 @@ def nameless(skeleton: Skeleton) -> Skeleton:
 
 
 def about_y(skeleton: Skeleton, degrees: float) -> Skeleton:
-    """A skeleton with plain axes, turned as a whole."""
+    """A skeleton with plain axes, turned about Y."""
     turn = Rotation.from_euler("y", degrees, degrees=True)
     return replace(skeleton, bind_translations=turn.apply(skeleton.bind_translations))
 

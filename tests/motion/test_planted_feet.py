@@ -1,4 +1,4 @@
-"""Feet stand where the source's stand: on legs of other proportions, without turning feet or limbs visibly."""
+"""Feet stand where the source's do, on legs of other proportions, without turning feet or limbs visibly."""
 
 from dataclasses import replace
 

@@ -220,7 +220,7 @@ def test_quaternions_are_unit_and_on_the_hemisphere_of_the_bind_pose(teacher: Si
 
 
 def test_surfels_lie_in_the_posed_surface(teacher: SimulatedTeacher) -> None:
-    """Their z axes against normals from differences of neighbouring splats' centres."""
+    """Compares their z axes with normals from differences of neighbouring splats' centres."""
     rig = teacher.rig
     flat = np.full(SIZE * SIZE, -1)
     flat[rig.texels.texels] = np.arange(len(rig.texels.texels))

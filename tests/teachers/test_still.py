@@ -85,7 +85,7 @@ def drawn(character: Character, size: int) -> Array:
 
 
 def even(picture: Array) -> Sharpness:
-    """What an image asks for that is even."""
+    """The surfels that an even image asks for."""
     count = (len(picture) // 2) ** 2
     return Sharpness(np.full(count, SPREAD), np.tile([1.0, 0], (count, 1)), np.zeros(count))
 

@@ -1,4 +1,4 @@
-"""What a training takes of a capture: nothing that is held out, each frame with its own poses, and what it looks at."""
+"""Training data from a capture: nothing that is held out, each frame with its own poses, and what it looks at."""
 
 from collections.abc import Iterator
 from dataclasses import replace

@@ -212,7 +212,7 @@ def test_poses_are_turned_to_fit_the_pictures(tmp_path: Path) -> None:
 
 
 def test_a_figure_that_stands_beside_its_pictures_is_moved_back() -> None:
-    """By the very distance by which the given poses were off; in the first and last frame, folds look like a part."""
+    """The move equals the error of the given poses; in the first and last frame, folds look like a part of it."""
     clip, skeleton = synthetic_avatar().clips[0], subject().rig.skeleton
     off = torch.tensor([[0.02, -0.01, 0.015], [-0.015, 0.02, 0.01], [0.01, 0.01, -0.02]])
     shifted = torch.from_numpy(clip.translations[WINDOWS]).float()

@@ -126,7 +126,7 @@ def large_figure(points: Array, monkeypatch: pytest.MonkeyPatch) -> list[TexelTr
 
 
 def test_tracks_of_a_clip_are_those_of_its_points_that_lie_on_the_figure(monkeypatch: pytest.MonkeyPatch) -> None:
-    """By the figure's size; what a point belongs to does not depend on those that are left out."""
+    """Near is judged by the figure's size; points that are left out change nothing for the others."""
     own, _ = spread()
     on = 8 * places(own, *template()) + [0.2, 0, 0]  # 3 cm on a person
     off = np.add(on[:5], [9.0, 0, 0])

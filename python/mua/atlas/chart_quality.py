@@ -17,7 +17,9 @@ PATCH = 0.01  # share of the character's surface from which on a starved patch c
 SCATTERED = 0.02  # share of the surface from which on small patches count together, as colours from a palette do
 PULLED = 2.5  # surface over drawing, in the direction in which a triangle is drawn too short for its chart
 DISTORTED = 0.15  # share of a chart's surface that may be pulled
-MOST_EVENED = 1.5  # of length: what a chart is enlarged by beyond its best linear map, lest a fold in it rules it
+MOST_EVENED = (
+    1.5  # in length: most that a chart grows beyond its best linear map, or a fold in it would decide its size
+)
 
 
 def overlapping(

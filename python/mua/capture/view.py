@@ -50,7 +50,7 @@ class View:
 
 
 @dataclass(frozen=True, eq=False)
-class Filmed:
+class RawFrame:
     """One frame as its camera took it, with distortion."""
 
     image: Array  # [H, W, 3] uint8 sRGB
@@ -64,18 +64,18 @@ def read_view(files: Files, camera: CaptureCamera, *, crop: bool = False, rows: 
     if files.background is not None:
         require_file(files.background)
         background = read_picture(files.background, number=0, size=camera.size)[..., :3]
-    return view_of(filmed(files, camera), camera, crop=crop, rows=rows, background=background)
+    return view_of(read_frame(files, camera), camera, crop=crop, rows=rows, background=background)
 
 
-def filmed(files: Files, camera: CaptureCamera) -> Filmed:
+def read_frame(files: Files, camera: CaptureCamera) -> RawFrame:
     """Read image and mask; raises InputError where there is none."""
     image = read_picture(files.image, number=files.number, size=camera.size)
     if files.mask is not None:
         mask = read_mask(files.mask, number=files.number, size=camera.size)
-        return Filmed(image[..., :3], mask, clear=False)
+        return RawFrame(image[..., :3], mask, clear=False)
     if image.shape[2] < 4:
         raise InputError(f"{files.image}: has no alpha; expected it to have one, or capture.json to name masks")
-    return Filmed(image[..., :3], image[..., 3:], clear=True)
+    return RawFrame(image[..., :3], image[..., 3:], clear=True)
 
 
 def nobody(camera: CaptureCamera, *, rows: int | None = None) -> View:
@@ -86,7 +86,7 @@ def nobody(camera: CaptureCamera, *, rows: int | None = None) -> View:
 
 
 def view_of(
-    taken: Filmed,
+    taken: RawFrame,
     camera: CaptureCamera,
     *,
     crop: bool,
@@ -115,7 +115,7 @@ def smaller(camera: CaptureCamera, rows: int | None) -> CaptureCamera:
 
 
 def look(
-    picture: Array,  # [H, W, C] 0..255, as filmed
+    picture: Array,  # [H, W, C] 0..255, with distortion
     camera: CaptureCamera,
     small: CaptureCamera,  # the same for a smaller image
     box: Box,  # of the smaller image

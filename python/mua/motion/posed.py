@@ -89,21 +89,21 @@ def _calibration(frames: _Frames, joint: int, role: str, found: dict[int, Array]
     side, _, part = role.rpartition(" ")
     turn = None
     if role in ("hips", "spine"):
-        turn = _of_trunk(frames, joint, role)
+        turn = _trunk_calibration(frames, joint, role)
     elif part in UPPER:
-        turn = _of_upper(frames, joint, side, part, found)
+        turn = _upper_calibration(frames, joint, side, part, found)
     elif part in LOWER:
-        turn = _of_lower(frames, joint, side, part, found)
+        turn = _lower_calibration(frames, joint, side, part, found)
     elif part == "foot":
-        turn = _of_foot(frames, joint, side, found)
+        turn = _foot_calibration(frames, joint, side, found)
     elif role == "head":
-        turn = _of_head(frames, joint, found)
+        turn = _head_calibration(frames, joint, found)
     elif part in FINGERS:
-        turn = _of_finger(frames, joint, role, found)
-    return _as_above(frames, joint, found) if turn is None else turn
+        turn = _finger_calibration(frames, joint, role, found)
+    return _calibration_as_above(frames, joint, found) if turn is None else turn
 
 
-def _of_trunk(frames: _Frames, joint: int, role: str) -> Array | None:
+def _trunk_calibration(frames: _Frames, joint: int, role: str) -> Array | None:
     """Calibration of a joint of the trunk by up and by left: that of the hips below, that of the shoulders above."""
     chain = frames.rest.matches.roles[role]
     share = 0.0 if role == "hips" else (chain.index(joint) + 1) / len(chain)
@@ -114,7 +114,7 @@ def _of_trunk(frames: _Frames, joint: int, role: str) -> Array | None:
     return _between(bind, frames.bind.up, across, up)
 
 
-def _of_upper(frames: _Frames, joint: int, side: str, part: str, found: dict[int, Array]) -> Array | None:
+def _upper_calibration(frames: _Frames, joint: int, side: str, part: str, found: dict[int, Array]) -> Array | None:
     """Calibration of an upper arm or thigh by its bone and by the axis on which elbow or knee bends."""
     bones = frames.bone(f"{side} {part}", f"{side} {UPPER[part]}")
     if bones is None:
@@ -130,8 +130,8 @@ def _of_upper(frames: _Frames, joint: int, side: str, part: str, found: dict[int
     return _between(bones[0], _carried(at_ease, bones[0], axis), along, across)
 
 
-def _of_lower(frames: _Frames, joint: int, side: str, part: str, found: dict[int, Array]) -> Array | None:
-    """Calibration of a forearm or shin, as `_of_upper`."""
+def _lower_calibration(frames: _Frames, joint: int, side: str, part: str, found: dict[int, Array]) -> Array | None:
+    """Calibration of a forearm or shin, as `_upper_calibration`."""
     upper, end = LOWER[part]
     above, bones = frames.bone(f"{side} {upper}", f"{side} {part}"), frames.bone(f"{side} {part}", f"{side} {end}")
     if above is None or bones is None:
@@ -152,7 +152,7 @@ def _at_ease(frames: _Frames, side: str, part: str) -> tuple[Array, Array]:
     return outward, -frames.bind.up if side == "left" else frames.bind.up
 
 
-def _of_foot(frames: _Frames, joint: int, side: str, found: dict[int, Array]) -> Array | None:
+def _foot_calibration(frames: _Frames, joint: int, side: str, found: dict[int, Array]) -> Array | None:
     """Calibration of a foot by its sole, level while it stands; by the bone to the toe where none is on the floor."""
     bones, ends = frames.bone(f"{side} foot", f"{side} toe"), frames.rest.matches.ends(f"{side} toe")
     if bones is None or ends is None:
@@ -170,9 +170,9 @@ def _of_foot(frames: _Frames, joint: int, side: str, found: dict[int, Array]) ->
     return _between(frames.bind.up, bones[0], up, ahead) if on_floor else by_bone
 
 
-def _of_head(frames: _Frames, joint: int, found: dict[int, Array]) -> Array:
+def _head_calibration(frames: _Frames, joint: int, found: dict[int, Array]) -> Array:
     """Calibration of the head as on average relative to the neck, but upright where a bone shows the skull."""
-    base = _as_above(frames, joint, found)
+    base = _calibration_as_above(frames, joint, found)
     ends = np.flatnonzero(frames.rest.source.parents == frames.rest.matches.chains[joint][1])
     if len(ends) != 1:
         return base
@@ -181,7 +181,7 @@ def _of_head(frames: _Frames, joint: int, found: dict[int, Array]) -> Array:
     return _laid(base, frames.bind.up, top) if stands else base
 
 
-def _of_finger(frames: _Frames, joint: int, role: str, found: dict[int, Array]) -> Array | None:
+def _finger_calibration(frames: _Frames, joint: int, role: str, found: dict[int, Array]) -> Array | None:
     """Calibration of a finger as of the joint above, with its bone laid along the source's."""
     chain = frames.rest.matches.roles[role]
     after = chain.index(joint) + 1
@@ -192,10 +192,10 @@ def _of_finger(frames: _Frames, joint: int, role: str, found: dict[int, Array]) 
     source = frames.own(joint, frames.at[:, last] - frames.at[:, first]).mean(axis=0)
     if not (target.any() and source.any()):
         return None
-    return _laid(_as_above(frames, joint, found), unit(target), unit(source))
+    return _laid(_calibration_as_above(frames, joint, found), unit(target), unit(source))
 
 
-def _as_above(frames: _Frames, joint: int, found: dict[int, Array]) -> Array:
+def _calibration_as_above(frames: _Frames, joint: int, found: dict[int, Array]) -> Array:
     """Calibration as in the bind pose relative to the part above, on average over upright frames."""
     own = rotation.conjugate(frames.moving(joint))
     return _mean(rotation.multiply(own, _world(frames, joint, found))[frames.upright])

@@ -58,10 +58,10 @@ def _skeletool(path: Path, lines: Sequence[str]) -> tuple[CaptureCamera, ...]:
             blocks[-1][1][key] = _numbers(values, VALUES[key], f"{path}, line {number}: {key}")
         elif key:
             raise InputError(f"{path}, line {number}: {key!r} is not read; expected name, {', '.join(VALUES)}")
-    return tuple(_of_block(name, fields, f"{path}: camera {name}") for name, fields in blocks)
+    return tuple(_skeletool_camera(name, fields, f"{path}: camera {name}") for name, fields in blocks)
 
 
-def _of_block(name: str, fields: dict[str, Array], where: str) -> CaptureCamera:
+def _skeletool_camera(name: str, fields: dict[str, Array], where: str) -> CaptureCamera:
     for key in NEEDED:
         if key not in fields:
             raise InputError(f"{where}: holds no {key}")

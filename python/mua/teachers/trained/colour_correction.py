@@ -19,7 +19,7 @@ class ColourCorrection(nn.Module):
         """The image [H, W, 4] as that camera shows it."""
         return torch.cat([image[..., :3] + image @ self._own()[camera].T, image[..., 3:]], dim=-1)
 
-    def unlikeness(self) -> Tensor:
+    def variance(self) -> Tensor:
         """The squared difference of cameras from the mean of all: summed over twelve numbers, averaged over cameras."""
         return self._own().square().sum(dim=(1, 2)).mean()
 

@@ -63,7 +63,7 @@ class ImageLoss(nn.Module):
         for row, colour in zip(rows.tolist(), backgrounds, strict=True):
             frame, camera = divmod(row, self._material.views.cameras)
             views.setdefault(frame, []).append((camera, colour))
-        losses = [self._of_frame(frame, of, moving=moving) for frame, of in views.items()]
+        losses = [self._frame_loss(frame, of, moving=moving) for frame, of in views.items()]
         return torch.stack(losses).sum() / len(rows)
 
     def window(self, frame: int) -> Window:
@@ -83,14 +83,14 @@ class ImageLoss(nn.Module):
         """Give the teacher the mean of the frames' looks, which it shows in any motion."""
         self.teacher.look.copy_(self.looks.mean(dim=0))
 
-    def _of_frame(self, index: int, views: Sequence[tuple[int, Tensor]], *, moving: bool) -> Tensor:
+    def _frame_loss(self, index: int, views: Sequence[tuple[int, Tensor]], *, moving: bool) -> Tensor:
         """The sum of the losses of a frame's views, which are drawn in one call."""
         window = self.window(index)
         frame = self.teacher(window, look=self.looks[index], moving=moving)
         splats = self.teacher.splats(frame, window.joints[0])
         seen = [(self._material.views.see(index, camera), camera, colour) for camera, colour in views]
         seen = [of for of in seen if of[0].weight > 0]  # where nobody is, nothing is drawn
-        loss = len(views) * (self._restraint(frame, index) + self._misalignment(frame, splats, index))
+        loss = len(views) * (self._regularisation(frame, index) + self._misalignment(frame, splats, index))
         if not seen:
             return loss + 0 * frame.texture.sum()  # that has a gradient in every stage
         pictures = draw_views(splats, [one.eye for one, _, _ in seen], by=self._rasteriser)
@@ -119,10 +119,10 @@ class ImageLoss(nn.Module):
         error = self._material.tracks[index].error(frame.posed, splats, offsets, size=self._size)
         return self._weights.tracks / (UNIT * self._size) ** 2 * error
 
-    def _restraint(self, frame: Frame, index: int) -> Tensor:
+    def _regularisation(self, frame: Frame, index: int) -> Tensor:
         """Regularisation: keeps near zero what the images do not determine."""
         loss = self._weights.residual * frame.added[:, GEOMETRY].square().mean()
         beside = self.looks[index].square().sum()
         if self.refinement is not None:
             beside = beside + self.refinement.size()
-        return loss + self._weights.beside * beside + self._weights.correction * self.correction.unlikeness()
+        return loss + self._weights.beside * beside + self._weights.correction * self.correction.variance()

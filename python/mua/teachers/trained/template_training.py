@@ -166,12 +166,12 @@ class _TemplateLoss(nn.Module):
         deformed = deformation.deform(descriptors, offsets=self.offsets)
         posed = self.template.pose(deformed.vertices, joints).posed
         seen = [
-            self._away(own, self._observations.observe(frame, torch.Generator().manual_seed(seed)))
+            self._observation_loss(own, self._observations.observe(frame, torch.Generator().manual_seed(seed)))
             for frame, seed, own in zip(frames.tolist(), seeds.tolist(), posed, strict=True)
         ]
-        return torch.stack(seen).mean() + self._restraint(deformation, deformed)
+        return torch.stack(seen).mean() + self._regularisation(deformation, deformed)
 
-    def _away(self, posed: Tensor, observed: Observed) -> Tensor:
+    def _observation_loss(self, posed: Tensor, observed: Observed) -> Tensor:
         """How far a posed template [V, 3] is from what was seen."""
         weights, loss = self._weights, posed.new_zeros(())
         if observed.cloud is not None:
@@ -182,10 +182,10 @@ class _TemplateLoss(nn.Module):
             loss = loss + weights.silhouette * silhouette_error(posed, self._samples, observed.outlines)
         return loss
 
-    def _restraint(self, deformation: MotionDeformation, deformed: Deformed) -> Tensor:
+    def _regularisation(self, deformation: MotionDeformation, deformed: Deformed) -> Tensor:
         """Regularisation: neighbours move alike."""
         weights = self._weights
-        rigid = deformation.graph.unlike(deformed.turns, deformed.moves)
+        rigid = deformation.graph.rigidity_error(deformed.turns, deformed.moves)
         smooth = roughness(deformed.offsets, self._edges)
         offset = deformed.offsets.square().sum(-1).mean()
         return (weights.rigid * rigid + weights.smooth * smooth + weights.offset * offset) / self._unit
