@@ -35,10 +35,10 @@ GPU_SECONDS = 1.0  # between two questions about the GPU
 
 
 class StageListener(Protocol):
-    """Progress callbacks of a distillation: its stages and their steps."""
+    """Progress callbacks of a distillation."""
 
     def stage(self, name: str) -> None:
-        """A stage begins, or continues where two take turns."""
+        """A stage begins, or continues: two may take turns."""
 
     def step(self, done: int, total: int, *, detail: str = "") -> None: ...
 
