@@ -104,7 +104,7 @@ def seen_at(capture: Capture, value: float) -> Array:
     return np.full(surfaces(capture, "walk").shape[:2], value)
 
 
-def test_what_is_wrong_in_a_file_of_tracks_is_a_sentence(capture: Capture) -> None:
+def test_rejects_tracks_with_wrong_arrays(capture: Capture) -> None:
     points = surfaces(capture, "walk")
     broken = points.copy()
     broken[2, 7] = np.nan
@@ -131,9 +131,7 @@ def test_what_is_wrong_in_a_file_of_tracks_is_a_sentence(capture: Capture) -> No
     ("content", "sentence"),
     [(None, "there is no such file; capture.json names tracks for every clip"), (b"half", "cannot be read as an .npz")],
 )
-def test_a_file_of_tracks_that_cannot_be_read_is_a_sentence(
-    capture: Capture, content: bytes | None, sentence: str
-) -> None:
+def test_rejects_unreadable_file_of_tracks(capture: Capture, content: bytes | None, sentence: str) -> None:
     file = capture.folder / "walk.left.npz"
     file.unlink()
     if content is not None:

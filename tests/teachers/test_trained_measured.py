@@ -67,7 +67,7 @@ def test_squares_are_cut_into_triangles(tmp_path: Path) -> None:
     np.testing.assert_array_equal(mesh.faces, [(0, 1, 2), (2, 3, 0)])
 
 
-def test_a_file_that_ends_early_is_a_sentence(tmp_path: Path) -> None:
+def test_rejects_surface_that_ends_early(tmp_path: Path) -> None:
     path = tmp_path / "a.ply"
     trimesh.Trimesh(CORNERS, TRIANGLES, process=False).export(path)
     whole = path.read_bytes()
