@@ -56,7 +56,7 @@ def dynamic_subbands(
     x: Tensor,  # [..., C, H, W]
     wavelet: str,
 ) -> Bands:
-    """What of textures varies with the frame; without leading axes of one texture alone."""
+    """The subbands of textures that vary with the frame; a texture alone has no leading axes."""
     ll, details = wavedec2(analyse_lowpass(x, wavelet, STATIC_LEVELS), wavelet, DYNAMIC_LEVELS)
     return Bands(ll, *(level.transpose(-4, -3).contiguous() for level in details))
 

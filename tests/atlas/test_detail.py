@@ -121,11 +121,11 @@ def test_a_part_that_is_not_there_is_said() -> None:
     assert character.notes[-1] == "--detail feet=2 changes nothing: no joint of the feet was recognised."
 
 
-def test_the_width_of_texels_is_told_by_part() -> None:
+def test_the_width_of_texels_is_described_by_part() -> None:
     character = build_atlas(strip([0, 1], joined=False), uv="auto", size=64, detail={"head": 2})
     body, head = texels_by_square(character, 2, apart=2)
-    told = describe_texels(character, 256)
-    assert told == (
+    described = describe_texels(character, 256)
+    assert described == (
         f"{(body + head) / 256**2:.0%} of 256 x 256 texels are in use; a texel is wide: "
         f"{1000 / np.sqrt(head):.1f} mm on the head, {1000 / np.sqrt(body):.1f} mm on the body."
     )

@@ -127,7 +127,7 @@ def test_a_band_with_too_few_texels_is_cut_anew() -> None:
 
 
 def test_a_layout_that_squeezes_one_end_of_a_chart_is_cut_anew() -> None:
-    """As a palette of gradients has it: no texel is shared, but lengths along u differ by up to eight times."""
+    """Palettes of gradients look like this: no texel is shared, but lengths along u differ by up to eight times."""
     vertices, faces, uv = patch(12, at=0, uv=uv_map(1, 1, at=(0, 0)))
     uv[:, 0] = 2 ** (3 * uv[:, 0] - 3)
     character = build_atlas(surfaces_of((vertices, faces, uv), images=(ramp(256),)), uv="auto", size=64)

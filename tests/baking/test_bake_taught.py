@@ -52,7 +52,7 @@ def test_a_capture_becomes_an_avatar_and_so_does_its_teacher(capture: Path, tmp_
     assert apart.status in FINISHED, apart
     avatar = mua.load(tmp_path / "apart.muaavatar")
     assert [clip.name for clip in avatar.clips] == ["walk"]
-    assert not avatar.encoding.heading
+    assert not avatar.encoding.remove_heading
 
 
 @pytest.mark.parametrize(

@@ -67,4 +67,4 @@ def long(clip: Clip, frames: int) -> tuple[np.ndarray, np.ndarray]:
 def test_the_students_descriptor_keeps_the_heading() -> None:
     settings = taught_settings(preset("tiny"), 128)
     assert settings.texels == 128
-    assert not settings.generalisation.heading
+    assert not settings.generalisation.remove_heading

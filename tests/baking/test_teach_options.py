@@ -31,7 +31,7 @@ from mua.splatting import perceptual
 from mua.splatting.rasterise import rasterise_views
 from mua.teachers.trained import model, settings
 from mua.teachers.trained.folder import load_teacher
-from mua.teachers.trained.image_losses import Lesson
+from mua.teachers.trained.image_losses import ImageLoss
 from mua.teachers.trained.template_training import TemplateSettings
 from mua.training.schedule import Schedule
 
@@ -128,7 +128,7 @@ def test_what_is_the_same_goes_on_with_what_was_trained(
 ) -> None:
     """Weights of the same content lie anywhere; nothing is drawn to learn from."""
     (tmp_path / "same.pth").write_bytes(lpips.read_bytes())
-    monkeypatch.setattr(Lesson, "forward", None)
+    monkeypatch.setattr(ImageLoss, "forward", None)
     assert trained(again(made, capture, tmp_path / "t", lpips_weights=tmp_path / "same.pth")) == trained(made)
 
 
@@ -243,7 +243,7 @@ def test_gsplat_draws_where_it_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> 
     monkeypatch.setattr(model, "gsplat_views", by_gsplat)
     shown, rows, black = material(), torch.arange(2), torch.zeros(2, 3)
     losses = {
-        by: float(Lesson(teacher(), shown, replace(SMALL, rasteriser=by))(rows, black).detach())
+        by: float(ImageLoss(teacher(), shown, replace(SMALL, rasteriser=by))(rows, black).detach())
         for by in ("mua", "gsplat")
     }
     assert losses["gsplat"] > 1.2 * losses["mua"]

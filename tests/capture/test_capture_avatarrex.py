@@ -96,7 +96,7 @@ def test_frames_without_a_mask_are_left_out(tmp_path: Path, command: Commands) -
 
 @pytest.mark.parametrize("begin", [0, 1])
 def test_pictures_may_have_other_names(tmp_path: Path, command: Commands, begin: int) -> None:
-    """Of fewer digits, masks as PNG, and counted from 1: the first image then shows the first pose."""
+    """Fewer digits, masks as PNG, and counted from 1: the first image then shows the first pose."""
     source = write_source(tmp_path / "set", WORLDS["y"])
     for file in sorted(source.rglob("*.jpg"), reverse=True):
         masked = "pha" in file.parts

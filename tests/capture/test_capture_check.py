@@ -76,14 +76,14 @@ CONVENTIONS: dict[str, tuple[Callable[[Array], Array], str]] = {
 @pytest.mark.parametrize("convention", CONVENTIONS)
 def test_another_convention_is_found_by_what_fits(small_capture: Capture, convention: str) -> None:
     change, sentence = CONVENTIONS[convention]
-    (told,) = check_capture(calibrated(small_capture, change), frames=1).problems
-    assert re.search(rf"^Outlines and masks overlap by \d+%; they would by 9\d% if {sentence}", told), told
+    (problem,) = check_capture(calibrated(small_capture, change), frames=1).problems
+    assert re.search(rf"^Outlines and masks overlap by \d+%; they would by 9\d% if {sentence}", problem), problem
 
 
 def test_poses_that_began_earlier_are_found(small_capture: Capture) -> None:
     walk, reach = small_capture.clips
-    (told,) = everything(replace(small_capture, clips=(replace(walk, first=0), reach))).problems
-    assert re.fullmatch(r"Clip walk: outlines .* they would by 9\d% with first = 1 in place of 0\.", told)
+    (problem,) = everything(replace(small_capture, clips=(replace(walk, first=0), reach))).problems
+    assert re.fullmatch(r"Clip walk: outlines .* they would by 9\d% with first = 1 in place of 0\.", problem)
 
 
 def test_a_camera_with_the_pictures_of_another_is_named(damaged: Capture) -> None:
@@ -91,30 +91,32 @@ def test_a_camera_with_the_pictures_of_another_is_named(damaged: Capture) -> Non
         for frame in range(frames):
             own, other = (damaged.files(clip, frame, name).image for name in ("front", "above"))
             own.write_bytes(other.read_bytes())
-    (told,) = everything(damaged).problems
-    assert re.fullmatch(r"Camera front: overlaps by .*; its images fit the calibration of camera above by 9\d%\.", told)
+    (problem,) = everything(damaged).problems
+    assert re.fullmatch(
+        r"Camera front: overlaps by .*; its images fit the calibration of camera above by 9\d%\.", problem
+    )
 
 
 def test_a_camera_that_nothing_explains_is_named(small_capture: Capture) -> None:
     front, left, *others = small_capture.cameras
     wrong = replace(front, world_to_camera=left.world_to_camera)
-    (told,) = everything(replace(small_capture, cameras=(wrong, left, *others))).problems
-    assert told.startswith("Camera front: overlaps by")
-    assert told.endswith("its calibration, or which images it has, cannot be right.")
+    (problem,) = everything(replace(small_capture, cameras=(wrong, left, *others))).problems
+    assert problem.startswith("Camera front: overlaps by")
+    assert problem.endswith("its calibration, or which images it has, cannot be right.")
 
 
 def test_a_camera_that_sees_nobody_is_named(small_capture: Capture) -> None:
     front, *others = small_capture.cameras
     away = replace(front, world_to_camera=np.diag([-1.0, 1, -1, 1]) @ front.world_to_camera)
-    (told,) = everything(replace(small_capture, cameras=(away, *others))).problems
-    assert told == "Camera front sees nobody: the posed template is outside its image."
+    (problem,) = everything(replace(small_capture, cameras=(away, *others))).problems
+    assert problem == "Camera front sees nobody: the posed template is outside its image."
 
 
 def test_a_mask_of_another_frame_is_named_with_the_frame(damaged: Capture) -> None:
     images = [damaged.files("walk", frame, "left").image for frame in (0, 3)]
     images[0].write_bytes(images[1].read_bytes())
-    (told,) = everything(damaged).problems
-    assert re.fullmatch(r"Camera left, clip walk, frame 0: overlaps by .* the mask fits frame 3 by 9\d%\.", told)
+    (problem,) = everything(damaged).problems
+    assert re.fullmatch(r"Camera left, clip walk, frame 0: overlaps by .* the mask fits frame 3 by 9\d%\.", problem)
 
 
 def test_empty_masks_are_named(damaged: Capture) -> None:
@@ -173,7 +175,7 @@ def test_a_video_that_ends_early_is_named(damaged: Capture) -> None:
 def test_a_motion_that_is_too_short_is_a_problem_of_its_clip_alone(small_capture: Capture) -> None:
     walk, reach = small_capture.clips
     checked = everything(replace(small_capture, clips=(replace(walk, frames=9), reach)))
-    assert [told for told in checked.problems if "images" not in told] == [
+    assert [problem for problem in checked.problems if "images" not in problem] == [
         f"Clip walk: {walk.motion}: has 5 poses at 30 frames per second; clip 'walk' needs 9 from pose 1 on."
     ]
     assert {view.clip for view in checked.views} == {"reach"}
@@ -183,14 +185,14 @@ def test_a_motion_that_is_too_short_is_a_problem_of_its_clip_alone(small_capture
     ("asked", "expected"), [(None, [3, 5]), (1, [4]), (3, [2, 4, 6]), (0, list(range(9))), (99, list(range(9)))]
 )
 def test_frames_are_spread_over_the_clip(small_capture: Capture, asked: int | None, expected: list[int]) -> None:
-    """Of 40 cameras and two clips, two frames of each clip make 160 views."""
+    """With 40 cameras and two clips, two frames of each clip make 160 views."""
     clip = replace(small_capture.clips[0], frames=9)
     many = replace(small_capture, cameras=small_capture.cameras * 10)
     assert chosen_frames(many, clip, asked) == expected
 
 
 def test_an_outline_covers_what_splats_do(small_capture: Capture) -> None:
-    """Against point-in-triangle at every pixel's middle, by signed areas."""
+    """Compares with point-in-triangle tests at every pixel's middle, by signed areas."""
     rng = np.random.default_rng(4)
     camera = small_capture.cameras[0]
     vertices = rng.normal([0, 0.85, 0], [0.5, 0.5, 0.3], (12, 3))
@@ -283,8 +285,8 @@ def test_the_picture_begins_with_the_worst_views_and_has_two_of_each_camera(
 def test_the_command_prints_what_it_found(small_capture: Capture, command: Commands, tmp_path: Path) -> None:
     ended = command("capture", "check", small_capture.folder, "-o", tmp_path / "check.png")
     assert ended.status == 0
-    for told in ("4 cameras, 30 frames", "held out: above", "walk (4 frames", "1.71 m tall", "Nothing was found"):
-        assert told in ended.out
+    for expected in ("4 cameras, 30 frames", "held out: above", "walk (4 frames", "1.71 m tall", "Nothing was found"):
+        assert expected in ended.out
     with Image.open(tmp_path / "check.png") as picture:
         assert picture.width > 1000
 
@@ -323,8 +325,8 @@ def test_cameras_whose_masks_are_sometimes_empty_are_named_and_these_count_nowhe
     for clip, frame in (("walk", 1), ("reach", 0)):
         Image.new("RGBA", (SIDE, SIDE)).save(damaged.files(clip, frame, "right").image)
     checked = everything(damaged)
-    told = "Camera right: 2 of 6 masks that were looked at are empty and count nowhere, first clip walk, frame 1."
-    assert (checked.problems, checked.remarks) == ((), (told,))
+    remark = "Camera right: 2 of 6 masks that were looked at are empty and count nowhere, first clip walk, frame 1."
+    assert (checked.problems, checked.remarks) == ((), (remark,))
     (right,) = (fit for fit in checked.cameras if fit.camera.name == "right")
     (sound,) = (fit for fit in everything(small_capture).cameras if fit.camera.name == "right")
     assert right.mean == pytest.approx(sound.mean, abs=0.02)
@@ -332,7 +334,7 @@ def test_cameras_whose_masks_are_sometimes_empty_are_named_and_these_count_nowhe
     assert right.least.mask.any()
     ended = command("capture", "check", damaged.folder, "--frames", 0)
     assert ended.status == 0
-    assert f"remark: {told}" in ended.out
+    assert f"remark: {remark}" in ended.out
 
 
 def invert(images: Iterable[Path]) -> None:
@@ -345,25 +347,25 @@ def invert(images: Iterable[Path]) -> None:
 @pytest.mark.parametrize(("camera", "named"), [("left", "Camera left"), ("*", "All cameras")])
 def test_inverted_masks_are_named(damaged: Capture, camera: str, named: str) -> None:
     invert(damaged.folder.glob(f"images/*/{camera}/*.png"))
-    (told,) = check_capture(damaged, frames=2).problems
-    assert re.fullmatch(rf"{named}: masks are inverted, by 9\d% they fit what is black; expected white .*\.", told), (
-        told
-    )
+    (problem,) = check_capture(damaged, frames=2).problems
+    assert re.fullmatch(
+        rf"{named}: masks are inverted, by 9\d% they fit what is black; expected white .*\.", problem
+    ), problem
 
 
 def test_a_camera_that_is_two_centimetres_off_is_named(small_capture: Capture) -> None:
-    """By how far, too: nothing else is said of the others."""
+    """The sentence says by how far; the other cameras get none."""
     front, left, *others = small_capture.cameras
     matrix = left.world_to_camera.copy()
     matrix[:2, 3] += 0.014, -0.014
     capture = replace(small_capture, cameras=(front, replace(left, world_to_camera=matrix), *others))
-    (told,) = everything(capture).problems
+    (problem,) = everything(capture).problems
     found = re.fullmatch(
         r"Camera left: overlaps by 8\d%, the others typically by 9\d%; it would by 9\d% if it pointed (\d\.\d) cm "
         r"beside \(at the person\): calibrate it again\.",
-        told,
+        problem,
     )
-    assert found is not None, told
+    assert found is not None, problem
     assert float(found[1]) == pytest.approx(2, abs=0.6)
 
 
@@ -377,8 +379,8 @@ def test_a_camera_that_fits_less_well_for_no_known_reason_is_worth_a_remark(
         Image.fromarray(pixels).save(image)
     checked = everything(damaged)
     assert checked.problems == ()
-    (told,) = checked.remarks
-    assert re.fullmatch(r"Camera left: overlaps by \d\d%, the others typically by 9\d%: look at its masks, .*", told)
+    (remark,) = checked.remarks
+    assert re.fullmatch(r"Camera left: overlaps by \d\d%, the others typically by 9\d%: look at its masks, .*", remark)
 
 
 @pytest.mark.parametrize(("by", "number"), [(1, "1 frame higher"), (-1, "1 frame lower")])
@@ -388,13 +390,13 @@ def test_a_camera_whose_frames_are_counted_otherwise_is_named(damaged: Capture, 
     for frame, image in enumerate(images):
         image.write_bytes(shown[min(max(frame + by, 0), len(shown) - 1)])
     checked = everything(replace(damaged, clips=damaged.clips[:1]))
-    (told,) = (one for one in checked.problems if "clip" not in one)
-    assert re.search(rf"^Camera left: .* it would by 9\d% if its images were numbered {number}\.$", told), told
+    (problem,) = (one for one in checked.problems if "clip" not in one)
+    assert re.search(rf"^Camera left: .* it would by 9\d% if its images were numbered {number}\.$", problem), problem
 
 
 @pytest.mark.parametrize("k1", [-0.2, 0.0])
 def test_a_distortion_that_was_left_out_is_named(small_capture: Capture, tmp_path: Path, k1: float) -> None:
-    """Of wide lenses, near enough that the person fills the image: elsewhere it does little."""
+    """With wide lenses, near enough that the person fills the image: elsewhere distortion changes little."""
     wide = tuple(
         replace(camera, focal=(50.0, 50.0), centre=(SIDE / 2, SIDE / 2), world_to_camera=nearer(camera))
         for camera in small_capture.cameras

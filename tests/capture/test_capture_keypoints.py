@@ -125,7 +125,7 @@ def test_a_template_of_another_height_has_limbs_as_long_as_the_persons(
 
 
 def test_limbs_become_as_long_as_the_persons(surfaces: Surfaces, known: Clip) -> None:
-    """The same person, a tenth larger, on the template as it is."""
+    """A person a tenth larger, on the unchanged template."""
     points = 1.1 * joints(surfaces, known)
     fitted = fit_keypoints(Keypoints(Path("a.trc"), tuple(ROLES), points, 30.0), surfaces)
     assert fitted.limbs == pytest.approx(1.1, abs=1e-6)

@@ -161,7 +161,7 @@ def test_frames_that_are_stored_are_left_alone(tmp_path: Path) -> None:
 def test_a_view_that_was_half_written_is_none(
     small_capture: Capture, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def killed(picture: Image.Image, place: Path, **told: object) -> None:
+    def killed(picture: Image.Image, place: Path, **options: object) -> None:
         place.write_bytes(b"\x89PNG")
         raise KeyboardInterrupt
 
@@ -270,8 +270,8 @@ def test_how_masks_usually_fit_is_what_most_of_the_training_views_do(tmp_path: P
     What is held out is spoilt where that would change the result: it does not count.
     """
     capture = make_capture(tmp_path)
-    learnt = [camera for camera in capture.cameras if not camera.held_out]
-    views = [("walk", *one) for one in product(range(FRAMES["walk"]), learnt)][:cut]
+    trained_on = [camera for camera in capture.cameras if not camera.held_out]
+    views = [("walk", *one) for one in product(range(FRAMES["walk"]), trained_on)][:cut]
     if not full:
         views += [("reach", *one) for one in product(range(FRAMES["reach"]), capture.cameras)]
         views += [("walk", frame, capture.camera("above")) for frame in range(FRAMES["walk"])]
@@ -283,5 +283,5 @@ def test_how_masks_usually_fit_is_what_most_of_the_training_views_do(tmp_path: P
         picture[: rows[len(rows) * 35 // 100], :, 3] = 0
         Image.fromarray(picture).save(image)
     trust = MaskTrust(capture)
-    weights = [trust.weight("walk", 0, capture.view("walk", 0, camera.name)) for camera in learnt]
+    weights = [trust.weight("walk", 0, capture.view("walk", 0, camera.name)) for camera in trained_on]
     assert (min(weights) > 0.99) == full

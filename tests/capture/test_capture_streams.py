@@ -43,7 +43,7 @@ def skeletool(*, radial: float = 0, animated: int = 0, mirrored: bool = False) -
 
 
 def captury(*, model: str = "OpenCV", focal: float = 61.0) -> str:
-    """The same cameras: a sensor of 8 mm across, whose pixels are square."""
+    """The cameras in TheCaptury's format: a sensor 8 mm wide, whose pixels are square."""
     pixel = 8 / SIZE[0]
     middle = (K[:2, 2] + 0.5 - np.array(SIZE) / 2) * pixel
     lines = [CAPTURY, "camera\tframe\tsensor"]

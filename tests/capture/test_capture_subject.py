@@ -24,7 +24,7 @@ def published(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def subject(published: Path, tmp_path: Path) -> Path:
-    """The same, to be spoilt."""
+    """A copy that a test may spoil."""
     shutil.copytree(published.parent, tmp_path / "dataset")
     return tmp_path / "dataset" / published.name
 

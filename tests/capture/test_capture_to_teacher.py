@@ -13,7 +13,7 @@ from taught import FEW
 
 import mua
 from mua.arrays import Array
-from mua.baking import teacher_stages as lessons
+from mua.baking import teacher_stages
 from mua.capture import Capture, open_capture
 from mua.capture.outline import posed_template
 from mua.teacher import TeacherFrame
@@ -36,12 +36,12 @@ def film_set(folder: Path, capture: Capture) -> None:
                 mask.save(place / "mask" / "pha" / f"{clip.first_image + frame:08d}.jpg")
 
 
-def assert_teaches(capture: Path, output: Path, clip: str, height: float, *, drivable: bool = False) -> None:
+def assert_trains_teacher(capture: Path, output: Path, clip: str, height: float, *, drivable: bool = False) -> None:
     """A teacher of three steps has frames of a clip that are as tall as the person."""
     few = Schedule(steps=2, batch=1, lr=1e-3)
     with pytest.MonkeyPatch.context() as patch:
         patch.setitem(settings.PRESETS, "tiny", FEW)
-        patch.setattr(lessons, "TEMPLATE", TemplateSettings(nodes=few, offsets=few, samples=300))
+        patch.setattr(teacher_stages, "TEMPLATE", TemplateSettings(nodes=few, offsets=few, samples=300))
         teacher = TrainedTeacher(mua.teach(capture, output=output, steps=3, texels=64, drivable=drivable))
     frames = teacher.frames(open_capture(capture).motion(clip), {2})
     (frame,) = (one for one in frames if isinstance(one, TeacherFrame))
@@ -59,7 +59,9 @@ def test_umas_layout_becomes_a_teacher(command: Commands, tmp_path: Path) -> Non
     assert command("capture", "describe", source, "-o", folder).status == 0
     assert command("capture", "check", folder).status == 0
     height = height_of(open_capture(folder).surfaces.vertices)
-    assert_teaches(folder, tmp_path / "teacher", "testing", height, drivable=True)  # on its surfaces in millimetres
+    assert_trains_teacher(
+        folder, tmp_path / "teacher", "testing", height, drivable=True
+    )  # on its surfaces in millimetres
 
 
 @pytest.mark.long
@@ -78,4 +80,4 @@ def test_avatarrexs_layout_becomes_a_teacher(command: Commands, tmp_path: Path, 
     assert command(*asked).status == 0
     ended = command("capture", "check", folder)
     assert ended.status == 0, ended
-    assert_teaches(folder, tmp_path / "teacher", capture.clips[0].name, height_of(capture.surfaces.vertices))
+    assert_trains_teacher(folder, tmp_path / "teacher", capture.clips[0].name, height_of(capture.surfaces.vertices))

@@ -104,7 +104,7 @@ def seen_at(capture: Capture, value: float) -> Array:
     return np.full(surfaces(capture, "walk").shape[:2], value)
 
 
-def test_what_is_wrong_in_a_file_of_tracks_is_a_sentence(capture: Capture) -> None:
+def test_rejects_tracks_with_wrong_arrays(capture: Capture) -> None:
     points = surfaces(capture, "walk")
     broken = points.copy()
     broken[2, 7] = np.nan
@@ -131,9 +131,7 @@ def test_what_is_wrong_in_a_file_of_tracks_is_a_sentence(capture: Capture) -> No
     ("content", "sentence"),
     [(None, "there is no such file; capture.json names tracks for every clip"), (b"half", "cannot be read as an .npz")],
 )
-def test_a_file_of_tracks_that_cannot_be_read_is_a_sentence(
-    capture: Capture, content: bytes | None, sentence: str
-) -> None:
+def test_rejects_unreadable_file_of_tracks(capture: Capture, content: bytes | None, sentence: str) -> None:
     file = capture.folder / "walk.left.npz"
     file.unlink()
     if content is not None:
@@ -151,14 +149,14 @@ def test_tracks_of_several_clips_need_names_of_their_own(capture: Capture) -> No
         open_capture(capture.folder)
 
 
-def test_the_check_tells_of_tracks_beside_the_person(capture: Capture) -> None:
-    def told() -> list[str]:
+def test_the_check_reports_tracks_beside_the_person(capture: Capture) -> None:
+    def problems() -> list[str]:
         return [problem for problem in check_capture(capture, frames=1).problems if ".npz" in problem]
 
-    assert told() == []
+    assert problems() == []
     spoil(capture, points=1000 * surfaces(capture, "walk"))
-    (one,) = told()
+    (one,) = problems()
     assert "Clip walk" in one
     assert "walk.npz: half of the points are more than" in one
     (capture.folder / "reach.npz").unlink()
-    assert any("reach.npz: there is no such file" in problem for problem in told())
+    assert any("reach.npz: there is no such file" in problem for problem in problems())

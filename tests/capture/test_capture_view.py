@@ -18,7 +18,7 @@ from mua.capture.outline import pixels
 from mua.capture.pictures import as_mask
 from mua.capture.smaller import area_average
 from mua.capture.video import video_frames
-from mua.capture.view import Filmed, person, view_of
+from mua.capture.view import RawFrame, person, view_of
 from mua.errors import InputError
 from mua.kernels.splat_project import eye_ellipses
 from mua.player.video import write_video
@@ -113,7 +113,7 @@ def test_a_wide_picture_stays_as_wide_where_it_is_made_smaller() -> None:
     wide = replace(CAMERA, distortion=(0.0,) * 5)
     picture = np.zeros((120, 160, 4), np.uint8)
     picture[40:80, 100:140] = 255
-    view = view_of(Filmed(picture[..., :3], picture[..., 3:], clear=False), wide, crop=False, rows=30)
+    view = view_of(RawFrame(picture[..., :3], picture[..., 3:], clear=False), wide, crop=False, rows=30)
     assert (view.pinhole.size, view.image.shape, view.mask.shape) == ((40, 30), (30, 40, 3), (30, 40))
     np.testing.assert_array_equal(np.argwhere(view.mask), np.argwhere(picture[::4, ::4, 3]))
     corner = np.array([[(100 - wide.centre[0]) / wide.focal[0], (40 - wide.centre[1]) / wide.focal[1], 1.0]])

@@ -84,7 +84,7 @@ def bind(skeleton: Skeleton) -> tuple[np.ndarray, np.ndarray]:
 
 
 def with_camera(glb: Glb) -> Glb:
-    """The same with a camera beside the body that the clip moves too."""
+    """The file with a camera beside the body, which the clip moves too."""
     nodes = glb.json["nodes"]
     nodes += [{"name": "Camera", "translation": [0, 50, 3]}, {"name": "RootNode", "children": [0, len(nodes)]}]
     glb.json["scenes"] = [{"nodes": [len(nodes) - 1]}]
@@ -93,7 +93,7 @@ def with_camera(glb: Glb) -> Glb:
 
 
 def with_face(glb: Glb) -> Glb:
-    """The same with a face that hangs rigidly on the head, as files of motion keep it for its expressions."""
+    """The file with a face that hangs rigidly on the head, as files of motion keep it for its expressions."""
     corners = np.array([[0, -8, 0], [5, -8, 0], [0, -8, 9]], float)
     glb.json["meshes"] = [{"primitives": [{"attributes": {"POSITION": glb.accessor(corners)}}]}]
     glb.json["nodes"].append({"mesh": 0, "name": "face"})
@@ -192,7 +192,7 @@ def test_skin_without_bind_matrices_is_bound_at_rest(tmp_path: Path) -> None:
     np.testing.assert_allclose(bare.bind_translations, skinned.bind_translations, atol=FLOAT_BOUND)
 
 
-def test_centimetres_taken_for_metres_are_told(tmp_path: Path) -> None:
+def test_centimetres_taken_for_metres_are_noted(tmp_path: Path) -> None:
     glb = rig(skin=False, mesh=False)
     glb.json["nodes"][0]["scale"] = [1, 1, 1]
     animation = read(glb, tmp_path)

@@ -63,7 +63,7 @@ def test_scene_without_triangles_is_refused(parts: tuple[Part, ...]) -> None:
 
 
 def test_closed_pieces_wound_inside_out_are_turned() -> None:
-    """With their texture coordinates; the others stay as they are."""
+    """Their texture coordinates turn with them; the other pieces stay as they are."""
     mixed, outward = (assemble(scene(parts=(boxes(wound=wound),)), HERE) for wound in ((1, -1, -1), (1, 1, 1)))
     np.testing.assert_array_equal(mixed.faces, outward.faces)
     np.testing.assert_array_equal(mixed.uv[mixed.uv_faces], outward.uv[outward.uv_faces])

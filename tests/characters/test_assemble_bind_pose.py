@@ -58,7 +58,7 @@ def test_scales_of_joints_leave_the_pose_alone(scale: tuple[float, float, float]
 
 @pytest.mark.parametrize(("scale", "about"), [((2.0, 1.5, 0.5), 0), ((1.03, 1, 0.98), 0), ((2.0, 1.5, 0.5), 40)])
 def test_scale_added_after_binding_is_folded_into_the_mesh(scale: tuple[float, ...], about: float) -> None:
-    """Also a small one, and one along axes that are not the joint's."""
+    """Tries a small scale, too, and one along axes that are not the joint's."""
     turn = at(0, 0, 0, Rotation.from_euler("xyz", [about, about / 2, about], degrees=True))
     stretch = turn @ np.diag([*scale, 1]) @ turn.T
     bigger_head = BIND.copy()
@@ -148,7 +148,7 @@ def test_character_is_turned_to_face_forward(degrees: int) -> None:
     assert bool(surfaces.notes) == (degrees > 60)
 
 
-def test_joints_with_numbers_behind_their_names_tell_left_from_right() -> None:
+def test_joints_with_numbers_behind_their_names_show_left_and_right() -> None:
     away = at(0, 0, 0, Rotation.from_euler("y", 180, degrees=True))
     names = ("hips_01", "spine_02", "head_03", "arm_l_04", "arm_r_05")
     assert any("turned by 180" in note for note in assemble(scene(node_names=names, rest=away @ BIND), HERE).notes)

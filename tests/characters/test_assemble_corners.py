@@ -18,7 +18,7 @@ MIRROR = at(3, -2, 1, Rotation.from_euler("xyz", [40, 50, 60], degrees=True)) @ 
 
 
 def look_of(places: Array, material: Array) -> tuple[Array, Array]:
-    """Texture coordinates and colours that tell where a corner [..., 3] is, and of which material [...]."""
+    """Texture coordinates and colours that encode where a corner [..., 3] is, and of which material [...]."""
     uv = places[..., :2] + 0.25 * places[..., 2:]  # alike in both materials, which a seam parts nevertheless
     red = 0.5 + 0.4 * np.sin(5 * places + material[..., None])
     return uv, np.concatenate([red, np.ones((*red.shape[:-1], 1))], axis=-1)
@@ -76,7 +76,7 @@ def test_a_texture_coordinate_belongs_to_one_vertex_and_one_material() -> None:
 
 
 @pytest.mark.parametrize(("apart", "weight", "count"), [(0, 0, 4), (1e-8, 1e-7, 4), (1e-4, 0, 6), (0, 0.01, 6)])
-def test_only_vertices_that_none_can_tell_apart_are_welded(apart: float, weight: float, count: int) -> None:
+def test_only_indistinguishable_vertices_are_welded(apart: float, weight: float, count: int) -> None:
     """Two triangles of 1 m that share an edge, whose ends are this far apart and weighted so differently."""
     edge = np.array([(1, 0, 0), (0, 1, 0)], float)
     positions = np.concatenate([[(0, 0, 0)], edge, edge + apart, [(1, 1, 0)]])

@@ -161,7 +161,7 @@ def test_a_doll_and_a_giant_move_as_a_person_does(size: float) -> None:
 
 
 def test_what_leaves_the_side_of_the_node_above_the_hips_hangs_on_the_hips() -> None:
-    """Also a head that slides by a fraction of a millimetre does so in the clip."""
+    """A head that slides by a fraction of a millimetre does so in the clip, too."""
     surfaces = assemble(steered(1), HERE)
     names = surfaces.skeleton.names
     assert names[surfaces.skeleton.parents[names.index("foot")]] == "hips"

@@ -29,7 +29,7 @@ def test_a_joint_named_twice_counts_once() -> None:
     assert lost == pytest.approx(0)
 
 
-def test_more_than_eight_influences_are_told() -> None:
+def test_more_than_eight_influences_are_noted() -> None:
     joints = np.tile(np.arange(9), (30, 1))
     names = tuple(f"bone{k}" for k in range(9))
     bind = np.tile(at(0, 1, 0), (9, 1, 1))

@@ -32,7 +32,7 @@ def test_a_transform_scales_first_then_turns_then_moves() -> None:
 
 @pytest.mark.parametrize("start", [0.0, 2.0])
 def test_a_clip_begins_with_its_first_key_and_ends_with_its_last(tmp_path: Path, start: float) -> None:
-    """Also where the last one is a frame's time but for what float32 takes off."""
+    """This holds where rounding to float32 puts the last key just before a frame's time."""
     glb = body()
     animate(glb, 1, "rotation", times=[start, start + 0.7], values=HALF_TURN)
     (clip,) = read(glb, tmp_path).clips
@@ -92,7 +92,7 @@ def test_a_shift_too_small_to_see_is_not_kept(tmp_path: Path) -> None:
     np.testing.assert_array_equal(clip.translations, np.tile(surfaces.skeleton.bind_translations, (31, 1, 1)))
 
 
-def test_scales_are_kept_for_the_mesh_and_told(tmp_path: Path) -> None:
+def test_scales_are_kept_for_the_mesh_with_a_note(tmp_path: Path) -> None:
     glb = body()
     animate(glb, 0, "translation", times=[0.0, 1.0], values=[[0, 0, 0], [1, 0, 0]])
     animate(glb, 2, "translation", times=[0.0, 1.0], values=[[0, 0.5, 0], [0, 0.51, 0]])

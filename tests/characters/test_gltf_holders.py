@@ -128,8 +128,8 @@ def test_moving_mesh_beside_the_skeleton_is_taken_where_it_is_near(
     turn(glb, block(glb, "drone", at=at, parent=None, size=size))
     surfaces = read(glb, tmp_path)
     assert ("drone" in surfaces.skeleton.names) is taken
-    told = "are attached rigidly to a joint" if taken else "that no joint moves are left out"
-    assert any("drone" in note for note in surfaces.notes), told
+    expected = "are attached rigidly to a joint" if taken else "that no joint moves are left out"
+    assert any("drone" in note for note in surfaces.notes), expected
 
 
 @pytest.mark.parametrize("unit", [1, 100])

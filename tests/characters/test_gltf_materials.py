@@ -163,9 +163,9 @@ def test_broken_transmission_is_named(tmp_path: Path) -> None:
 def test_unlit_materials_and_variants_are_named(tmp_path: Path) -> None:
     glb = textured(PICTURE, extensions={"KHR_materials_unlit": {}})
     glb.json["extensions"] = {"KHR_materials_variants": {"variants": [{"name": "night"}, {"name": "day"}]}}
-    told = read(glb, tmp_path).notes
-    assert "Unlit materials are shaded like the others: cloth." in told
-    assert "The file's material variants are left out, its default is drawn: night, day." in told
+    notes = read(glb, tmp_path).notes
+    assert "Unlit materials are shaded like the others: cloth." in notes
+    assert "The file's material variants are left out, its default is drawn: night, day." in notes
 
 
 def test_compressed_pictures_are_refused_with_advice(tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""VRM avatars of both versions: bones, facing, hidden meshes, and what is told of the rest."""
+"""VRM avatars of both versions: bones, facing, hidden meshes, and what is noted of the rest."""
 
 from pathlib import Path
 from typing import Any
@@ -91,22 +91,22 @@ def test_meshes_for_the_wearers_own_eyes_are_left_out(tmp_path: Path) -> None:
         assert "Meshes that the file hides are left out: inner." in surfaces.notes
 
 
-def test_author_licence_springs_faces_and_constraints_are_told(tmp_path: Path) -> None:
+def test_author_licence_springs_faces_and_constraints_are_noted(tmp_path: Path) -> None:
     meta = {"name": "Mira", "authors": ["Ann", "Bo"], "licenseUrl": "https://example.org/terms"}
     glb = second(body(), BONES, meta=meta, expressions={"preset": {"happy": {}}})
     glb.json["extensions"]["VRMC_springBone"] = {"springs": [{}, {}]}
     glb.json["nodes"][1]["extensions"] = {"VRMC_node_constraint": {"constraint": {}}}
-    told = " ".join(read(glb, tmp_path).notes)
-    assert "VRM avatar Mira by Ann, Bo: its licence is https://example.org/terms;" in told
-    assert "2 spring bone groups are left out" in told
-    assert "facial expressions (blend shapes) are left out" in told
-    assert "constraints on 1 of the avatar's nodes are left out" in told
+    notes = " ".join(read(glb, tmp_path).notes)
+    assert "VRM avatar Mira by Ann, Bo: its licence is https://example.org/terms;" in notes
+    assert "2 spring bone groups are left out" in notes
+    assert "facial expressions (blend shapes) are left out" in notes
+    assert "constraints on 1 of the avatar's nodes are left out" in notes
     old = first(body(), BONES, meta={"title": "Mira", "author": "Ann", "licenseName": "CC_BY"},
                 secondaryAnimation={"boneGroups": [{}]}, blendShapeMaster={"blendShapeGroups": [{}]})  # fmt: skip
-    told = " ".join(read(old, tmp_path).notes)
-    assert "Mira by Ann: its licence is CC BY;" in told
-    assert "1 spring bone groups" in told
-    assert "facial expressions" in told
+    notes = " ".join(read(old, tmp_path).notes)
+    assert "Mira by Ann: its licence is CC BY;" in notes
+    assert "1 spring bone groups" in notes
+    assert "facial expressions" in notes
 
 
 @pytest.mark.parametrize(
@@ -135,7 +135,7 @@ def test_bone_that_old_exporters_mark_as_missing_is_skipped(tmp_path: Path) -> N
 
 
 def test_humanoid_bones_have_the_roles_that_joint_names_are_given() -> None:
-    """Of either side alike."""
+    """On both sides alike."""
     said = {"hips": "hips", "upperChest": "spine", "leftToes": "left toe", "leftFoot": "left foot"}
     said |= {"rightLowerLeg": "right shin", "leftLittleDistal": "left pinky", "rightThumbProximal": "right thumb"}
     said |= {"leftShoulder": "left shoulder", "rightUpperArm": "right upper_arm", "rightLowerArm": "right forearm"}

@@ -15,11 +15,11 @@ from mua.characters.resize import resized
 from mua.errors import InputError
 
 
-@pytest.mark.parametrize(("unit", "told"), [(100.0, 0.01), (1000.0, 0.001), (0.01, 100.0)])
-def test_implausible_height_is_brought_to_metres_and_told(unit: float, told: float) -> None:
+@pytest.mark.parametrize(("unit", "metres"), [(100.0, 0.01), (1000.0, 0.001), (0.01, 100.0)])
+def test_implausible_height_is_brought_to_metres_with_a_note(unit: float, metres: float) -> None:
     surfaces = assemble(in_units(unit), HERE)
     np.testing.assert_allclose(surfaces.vertices[surfaces.faces], part().positions[part().faces], atol=1e-12)
-    assert f"one unit is taken as {told:g} m" in surfaces.notes[0]
+    assert f"one unit is taken as {metres:g} m" in surfaces.notes[0]
     assert "--scale" in surfaces.notes[0]
     assert "--height" in surfaces.notes[0]
     np.testing.assert_allclose(surfaces.clips[0].translations[-1, surfaces.skeleton.root], [0.8, 0.9, 0], atol=1e-12)
@@ -48,7 +48,7 @@ def high(surfaces: Surfaces) -> float:
 
 
 @pytest.mark.parametrize("unit", [1e-6, 1e5])
-def test_a_height_that_no_unit_explains_is_made_that_of_an_adult_and_told(unit: float) -> None:
+def test_a_height_that_no_unit_explains_is_made_that_of_an_adult_with_a_note(unit: float) -> None:
     surfaces = assemble(in_units(unit), HERE)
     assert high(surfaces) == pytest.approx(ADULT)
     assert f"it is scaled to {ADULT} m. --height METRES" in surfaces.notes[0]
@@ -61,7 +61,7 @@ def test_a_figure_that_creeps_is_not_taken_for_a_small_one() -> None:
     assert surfaces.size_notes == ()
 
 
-def test_a_giant_keeps_its_size_and_is_told() -> None:
+def test_a_giant_keeps_its_size_with_a_note() -> None:
     surfaces = assemble(in_units(15 / high(assemble(scene(), HERE))), HERE)
     assert high(surfaces) == pytest.approx(15)
     assert "is 15 m high, which is unusual; its size is kept. --height METRES" in surfaces.notes[0]
@@ -92,7 +92,7 @@ def test_a_scale_that_leaves_no_possible_size_is_refused() -> None:
 
 
 @pytest.mark.parametrize(
-    ("asked", "told"),
+    ("asked", "error"),
     [
         ({"scale": 2.0, "height": 1.0}, "--scale 2 and --height 1: expected one of them"),
         ({"scale": 0.0}, "--scale 0: expected a number above 0"),
@@ -104,6 +104,6 @@ def test_a_scale_that_leaves_no_possible_size_is_refused() -> None:
         ({"height": float("nan")}, "--height nan: expected 0.01 to 100 metres"),
     ],
 )
-def test_impossible_sizes_are_refused(asked: dict[str, float], told: str) -> None:
-    with pytest.raises(InputError, match=re.escape(told)):
+def test_impossible_sizes_are_refused(asked: dict[str, float], error: str) -> None:
+    with pytest.raises(InputError, match=re.escape(error)):
         FigureSize(**asked)

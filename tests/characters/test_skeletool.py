@@ -213,7 +213,7 @@ def test_motion_without_frames_or_a_character_is_refused(character: Path, tmp_pa
 
 
 @pytest.mark.parametrize("suffix", [".character", ".skeleton", ".skin", ".motion", ".obj"])
-def test_files_that_end_too_early_are_sentences(character: Path, suffix: str) -> None:
+def test_rejects_files_that_end_early(character: Path, suffix: str) -> None:
     file = character.with_suffix(suffix)
     lines = file.read_text().splitlines(keepends=True)
     for kept in {*range(min(len(lines) - 1, 12)), len(lines) // 2}:

@@ -37,7 +37,7 @@ def test_a_joint_of_two_skins_is_bound_as_in_the_one_that_it_carries_more_of() -
 
 
 def test_skins_whose_binds_mostly_disagree_stay_apart() -> None:
-    """Though one joint, which one of them uses, would put both at the same place."""
+    """One joint, which one of them uses, would put both at the same place."""
     second = np.linalg.inv(BIND)
     second[1:] = [inverse @ at(0.1 * j, 0, 0) for j, inverse in enumerate(second[1:], 1)]
     assert len(grouped(skins(second, weighing(0, 0, 9), weighing(1, 3, 4)))) == 2

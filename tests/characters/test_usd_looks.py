@@ -107,7 +107,7 @@ def test_material_that_reads_colours_of_points_gets_them(plain: Path) -> None:
 
 
 def box(stage: Usd.Stage, path: str) -> UsdGeom.Mesh:
-    """A triangle of 10 units."""
+    """A triangle with sides of 10 units."""
     mesh = UsdGeom.Mesh.Define(stage, path)
     mesh.CreatePointsAttr([Gf.Vec3f(0, 0, 0), Gf.Vec3f(10, 0, 0), Gf.Vec3f(0, 0, 10)])
     mesh.CreateFaceVertexCountsAttr([3])
@@ -214,13 +214,13 @@ def test_glow_lies_where_the_colour_does_or_is_left_out_by_name(tmp_path: Path, 
         emission.ConnectToSource(image.CreateOutput("rgb", Sdf.ValueTypeNames.Float3))
 
     surfaces = read_surfaces(edited(path, glow))
-    told = [note for note in surfaces.notes if "Emission with another UV mapping" in note]
+    notes = [note for note in surfaces.notes if "Emission with another UV mapping" in note]
     if wrap == "mirror":
-        assert told == []
+        assert notes == []
         assert (surfaces.materials[0].image[..., :3] == 255).all()
     else:
-        assert len(told) == 1
-        assert told[0].endswith("Skin.")
+        assert len(notes) == 1
+        assert notes[0].endswith("Skin.")
         np.testing.assert_array_equal(surfaces.materials[0].image, dark)
 
 

@@ -26,7 +26,7 @@ def turned(piece: tuple[Array, Array]) -> tuple[Array, Array]:
 
 @pytest.mark.parametrize("middle", [(0, 0, 0), (3, -2, 5), (-1e4, 2e4, 1e4)])
 def test_of_several_pieces_those_that_face_inward_are_found(middle: tuple[float, float, float]) -> None:
-    """Also where they are small and far from the origin, or one lies in another."""
+    """They are found where they are small and far from the origin, and where one lies in another."""
     pieces = [turned(cube(1e-3, middle)), cube(1e-3, middle), cube(2.0), turned(cube(1.0))]
     vertices, faces = together(*pieces)
     found = inside_out(vertices, faces).reshape(4, 12)

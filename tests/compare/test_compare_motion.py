@@ -67,7 +67,7 @@ def test_posed_meshes_keep_where_the_body_looks_where_descriptors_do(smooth_reco
     rotations = clip.rotations.copy()
     rotations[:, root] = rotation.multiply(turn, rotations[:, root])
     turned = Clip("turned", clip.rate, rotations, clip.translations)
-    one, other = (pose_about_root(rig, rig.mesh.vertices, c, 3, heading=False) for c in (clip, turned))
+    one, other = (pose_about_root(rig, rig.mesh.vertices, c, 3, remove_heading=False) for c in (clip, turned))
     np.testing.assert_allclose(other, rotation.rotate(np.broadcast_to(turn, (len(one), 4)), one), atol=1e-9)
 
 

@@ -17,7 +17,7 @@ from mua.baking.order import Order
 from mua.capture import Capture, CaptureClip, write_capture
 from mua.motion.mapping import write_mapping
 from mua.motion.poses_file import write_poses
-from mua.recording.rig_file import save_rig
+from mua.recording.rig_file import write_rig
 from mua.student.settings import preset
 from mua.training.checkpoint import Checkpoints
 
@@ -91,7 +91,7 @@ def test_the_picture_of_a_bake(opened: Callable[[str], Path], monkeypatch: pytes
         ("a.muaavatar", lambda path: mua.save(path, AVATAR)),
         ("mapping.json", lambda path: write_mapping(path, (), ("hips",))),
         ("walk.npz", lambda path: write_poses(path, AVATAR.rig.skeleton, AVATAR.clips[0])),
-        ("rig.npz", lambda path: save_rig(path, AVATAR.rig)),
+        ("rig.npz", lambda path: write_rig(path, AVATAR.rig)),
         ("stage.pt", lambda path: Checkpoints(path.parent, "key").save("stage", {})),
         (
             "capture.json",

@@ -381,6 +381,6 @@ def test_survives_truncation_at_every_offset(tmp_path: Path) -> None:
         except InputError:
             refused += 1
             continue
-        # Digits of the last number were lost, or whole frames, which a note tells.
+        # Digits of the last number were lost, or whole frames, which a note reports.
         assert read.clip.rotations.shape == whole.clip.rotations.shape or "holds 1 frames" in read.notes[0]
     assert 0.9 * len(PERSON) < refused < len(PERSON)

@@ -20,7 +20,7 @@ def foot(low: slice, *, size: float = 1.0, pace: float = 0.0, rate: float = 30.0
 
 @pytest.mark.parametrize(("rate", "frames", "stands"), [(30.0, 2, False), (30.0, 4, True), (120.0, 9, False)])
 def test_a_foot_that_is_down_for_a_moment_passes(rate: float, frames: int, stands: bool) -> None:
-    """Of at least a tenth of a second."""
+    """A foot stands where it is down for at least a tenth of a second."""
     found = planted(foot(slice(10, 10 + frames), rate=rate), rate, 0.9)[:, 0]
     assert found[10 : 10 + frames].tolist() == [stands] * frames
     assert found.sum() == stands * frames

@@ -29,7 +29,7 @@ def turned(skeleton: Skeleton, turn: Rotation) -> tuple[np.ndarray, np.ndarray]:
 
 
 def named(skeleton: Skeleton, old: str, new: str) -> Skeleton:
-    """The same skeleton with words of its names exchanged."""
+    """The skeleton with words of its names exchanged."""
     swapped = (name.replace(old, "?").replace(new, old).replace("?", new) for name in skeleton.names)
     return replace(skeleton, names=tuple(swapped))
 
@@ -70,7 +70,7 @@ def test_a_bind_pose_that_is_a_little_twisted_faces_along_an_axis_all_the_same()
     assert moved == pytest.approx(np.radians(30), abs=ROUNDING)
 
 
-def test_toes_tell_where_a_rig_exchanges_left_and_right() -> None:
+def test_toes_show_where_a_rig_exchanges_left_and_right() -> None:
     skeleton = named(person(), "Left", "Right")
     assert front_of(skeleton, *turned(skeleton, Rotation.identity())) == pytest.approx(0, abs=ROUNDING)
 

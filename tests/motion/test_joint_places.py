@@ -1,4 +1,4 @@
-"""Limbs are told by their places on people whose names say nothing, and on nothing else."""
+"""Limbs are recognised by their positions on people whose names say nothing, and on nothing else."""
 
 from dataclasses import replace
 
@@ -19,7 +19,7 @@ def nameless(skeleton: Skeleton) -> Skeleton:
 
 
 def about_y(skeleton: Skeleton, degrees: float) -> Skeleton:
-    """A skeleton with plain axes, turned as a whole."""
+    """A skeleton with plain axes, turned about Y."""
     turn = Rotation.from_euler("y", degrees, degrees=True)
     return replace(skeleton, bind_translations=turn.apply(skeleton.bind_translations))
 
@@ -27,7 +27,7 @@ def about_y(skeleton: Skeleton, degrees: float) -> Skeleton:
 @pytest.mark.parametrize("beside", [0, 3])
 @pytest.mark.parametrize("turn", [0, 180, 90])
 @pytest.mark.parametrize("arms_down", [0, 50])
-def test_tells_the_limbs_of_a_person_who_stands(turn: float, arms_down: float, beside: float) -> None:
+def test_recognises_the_limbs_of_a_person_who_stands(turn: float, arms_down: float, beside: float) -> None:
     whole = about_y(person(arms_down=arms_down, legs_apart=8), turn)
     whole.bind_translations[whole.root] += [beside, 0, beside]
     expected = {
@@ -41,7 +41,7 @@ def test_tells_the_limbs_of_a_person_who_stands(turn: float, arms_down: float, b
     assert {name: found.get(name) for name in expected} == expected
 
 
-def test_motion_goes_onto_joints_told_by_their_places_and_says_so() -> None:
+def test_motion_goes_onto_joints_recognised_by_position_and_says_so() -> None:
     source, target = person(), nameless(person(size=1.2))
     found, notes = retarget(SourceMotion(source, walk(source)), target)
     expected, _ = retarget(SourceMotion(source, walk(source)), person(size=1.2))
@@ -76,7 +76,7 @@ def quadruped() -> Skeleton:
     return upright(names, above, offsets)
 
 
-def test_tells_nothing_of_what_is_no_standing_person() -> None:
+def test_recognises_nothing_in_what_is_no_standing_person() -> None:
     lying = replace(person(), bind_translations=person().bind_translations[:, [2, 0, 1]])
     armless = replace(person(), names=person().names)
     offsets = armless.bind_translations.copy()

@@ -86,12 +86,12 @@ def renamed(skeleton: Skeleton, **names: str) -> Skeleton:
 
 
 def in_one_place(skeleton: Skeleton) -> Skeleton:
-    """The same joints without lengths or places that could tell what they are."""
+    """The skeleton without lengths or places by which its joints could be recognised."""
     return replace(skeleton, bind_translations=np.zeros_like(skeleton.bind_translations))
 
 
 def other_habit(skeleton: Skeleton) -> Skeleton:
-    """The same joints by names that none of the skeleton's equals."""
+    """The skeleton with joint names none of which equals its own."""
     return replace(skeleton, names=tuple(f"mixamorig_{name}" for name in skeleton.names))
 
 

@@ -23,7 +23,7 @@ def motion(tmp_path: Path) -> Path:
 
 
 def twice_as_large(skeleton: Skeleton) -> Skeleton:
-    """The same joints by names that say nothing."""
+    """The skeleton at twice its size, with names that say nothing."""
     names = tuple(f"j{i}" for i in range(len(skeleton.names)))
     return replace(skeleton, names=names, bind_translations=2 * skeleton.bind_translations)
 

@@ -229,7 +229,7 @@ def test_what_the_body_lacks_stays_where_the_users_clips_have_it() -> None:
 
 
 def test_bones_are_as_long_as_in_the_users_clips() -> None:
-    """Else clips made for a longer arm would seem to stretch it, and every joint be read as one that is translated."""
+    """Otherwise clips made for a longer arm would seem to stretch it, and every joint would count as translated."""
     skeleton = RIGS["A-pose"]
     clip, hand = still(skeleton, 10), skeleton.names.index("LeftHand")
     clip.translations[:, hand] *= 1.3

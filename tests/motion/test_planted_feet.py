@@ -1,4 +1,4 @@
-"""Feet stand where the source's stand: on legs of other proportions, without turning feet or limbs visibly."""
+"""Feet stand where the source's do, on legs of other proportions, without turning feet or limbs visibly."""
 
 from dataclasses import replace
 
@@ -37,14 +37,14 @@ def put_on(source: SourceMotion, target: Skeleton, feet: Feet) -> tuple[Clip, Mo
 
 def test_standing_feet_of_other_legs_stand() -> None:
     source, target = SourceMotion(person(), walk(person())), long_thighs()
-    kept, before, untold = put_on(source, target, "keep")
-    held, after, told = put_on(source, target, "auto")
+    kept, before, no_notes = put_on(source, target, "keep")
+    held, after, notes = put_on(source, target, "auto")
     assert before.slide is not None
     assert after.slide is not None
     assert before.slide > 0.1
     assert after.slide < before.slide / 4
     assert after.limb_degrees < SMALL
-    assert (untold, len(told)) == ((), 1)
+    assert (no_notes, len(notes)) == ((), 1)
     feet = [target.names.index(name) for name in ("LeftFoot", "RightToeBase")]
     turned = np.sum(world(target, kept)[0][:, feet] * world(target, held)[0][:, feet], axis=-1)
     np.testing.assert_allclose(np.abs(turned), 1, atol=ROUNDING)

@@ -58,7 +58,7 @@ def test_a_wrong_pair_shows_where_the_limb_ends_and_names_the_joints(mapping: di
 
 
 def test_joints_of_one_name_for_the_whole_arm_do_not_hide_that_it_stays_straight() -> None:
-    """Only pairs would be measured: an arm moved as a whole agrees with its upper part."""
+    """Pairs alone would not show it: an arm moved as one piece agrees with its upper part."""
     arm = {"LeftArm": "LeftArm", "LeftForeArm": "LeftArm", "LeftHand": "LeftArm"}
     found = measured(person(), arm)
     assert max(limb.share for limb in found.reach if limb.limb == "left hand") > WRONG

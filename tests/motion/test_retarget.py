@@ -30,7 +30,7 @@ from mua.pose.skeleton import Skeleton
 
 
 def below_a_turned_joint(skeleton: Skeleton) -> Skeleton:
-    """The same skeleton in the same place under a node that is turned and moved."""
+    """The skeleton in its place, under a node that is turned and moved."""
     turn, shift = Rotation.random(random_state=3).as_quat(scalar_first=True), np.array([0.3, 0.1, -0.2])
     rotations = np.concatenate([turn[None], skeleton.bind_rotations])
     rotations[1] = rotation.multiply(rotation.conjugate(turn), rotations[1])

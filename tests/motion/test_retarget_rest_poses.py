@@ -27,7 +27,7 @@ from mua.motion.source import SourceMotion
 from mua.pose.clip import Clip
 from mua.pose.skeleton import Skeleton
 
-ESTIMATE_BOUND = 8.0  # degrees: how far this person's trunk leans at rest, and what a walk tells of twists
+ESTIMATE_BOUND = 8.0  # degrees: how far this person's trunk leans at rest, and what a walk shows of twists
 
 
 def median_apart(skeleton: Skeleton, clip: Clip, other: Clip) -> float:

@@ -22,7 +22,7 @@ from mua.pose.skeleton import Skeleton
 
 
 def reparented(skeleton: Skeleton, joint: str, parent: str) -> Skeleton:
-    """The same joints at the same places, one of them on another."""
+    """The skeleton with its joints where they are, one of them on another parent."""
     index, above = skeleton.names.index(joint), skeleton.names.index(parent)
     turned, at = skeleton.world(skeleton.bind_rotations, skeleton.bind_translations)
     parents, rotations = skeleton.parents.copy(), skeleton.bind_rotations.copy()
@@ -34,7 +34,7 @@ def reparented(skeleton: Skeleton, joint: str, parent: str) -> Skeleton:
 
 
 def on_a_root(skeleton: Skeleton, *, moved: tuple[str, ...]) -> Skeleton:
-    """The same skeleton below a root, with a joint in its belly that nothing moves; `moved` hang on the root."""
+    """The skeleton below a root, with a joint in its belly that nothing moves; `moved` hang on the root."""
     names = ("Root", *skeleton.names, "Belly")
     parents = np.concatenate([[-1], skeleton.parents + 1, [0]]).astype(np.int32)
     turns = np.concatenate([[[1.0, 0, 0, 0]], skeleton.bind_rotations, [[0.5, 0.5, -0.5, 0.5]]])
@@ -56,7 +56,7 @@ def test_parts_of_the_trunk_that_hang_on_the_root_go_with_the_body() -> None:
     np.testing.assert_allclose(np.abs(np.sum(turned[0] * turned[1], axis=-1)), 1, atol=ANGLE_BOUND)
 
 
-def test_tells_which_limbs_of_the_character_nothing_moves() -> None:
+def test_says_which_limbs_of_the_character_nothing_moves() -> None:
     whole = person()
     arm = ("Shoulder", "Arm", "ForeArm", "Hand", "HandMiddle1")
     kept = [j for j, name in enumerate(whole.names) if name.removeprefix("Left").removeprefix("Right") not in arm]

@@ -1,4 +1,4 @@
-"""Limbs whose names tell only some of their parts, split by the lengths of their bones."""
+"""Limbs of which names give only some parts, split by the lengths of their bones."""
 
 from dataclasses import replace
 
@@ -33,7 +33,7 @@ def test_finds_the_upper_arm_behind_collar_bones_and_twist_joints(
 
 
 def test_a_joint_that_bends_over_the_frames_begins_a_part() -> None:
-    """A collar bone from the middle of the chest is longer than the upper arm: only its bend tells them apart."""
+    """A collar bone from the middle of the chest is longer than the upper arm: only its bend distinguishes them."""
     lengths = (0.09, 0.16, 0.2, 0.24, 0.1)
     bent = [line(*lengths), line(*lengths)]
     bent[1][3:] = bent[1][2] + np.cumsum(lengths[2:])[:, None] * [0.8, 0.6, 0]
@@ -64,7 +64,7 @@ def called(skeleton: Skeleton, parts: dict[str, str]) -> Skeleton:
 
 
 @pytest.mark.parametrize("parts", [NUMBERED, WITHOUT_ELBOW])
-def test_motion_goes_onto_limbs_whose_names_tell_only_some_parts(parts: dict[str, str]) -> None:
+def test_motion_goes_onto_limbs_whose_names_give_only_some_parts(parts: dict[str, str]) -> None:
     source, target = person(), called(person(size=1.2), parts)
     found, notes = retarget(SourceMotion(source, walk(source)), target)
     expected, _ = retarget(SourceMotion(source, walk(source)), person(size=1.2))
@@ -83,7 +83,7 @@ def test_a_limb_of_one_bone_stays_one() -> None:
     assert "left forearm" not in match_joints(block, block).roles
 
 
-def test_a_motion_without_names_is_told_by_its_frames_where_its_rest_pose_is_no_person() -> None:
+def test_a_motion_without_names_is_recognised_by_its_frames_where_its_rest_pose_is_no_person() -> None:
     """All bones of the rest pose point one way: only the frames show a body."""
     whole = person()
     clip = walk(whole)

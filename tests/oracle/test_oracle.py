@@ -54,14 +54,14 @@ INDEPENDENT = {
 }
 
 
-def turned_avatar(*, heading: bool, rate: float = 30.0, wavelet: str = "bior4.4") -> Avatar:
+def turned_avatar(*, remove_heading: bool, rate: float = 30.0, wavelet: str = "bior4.4") -> Avatar:
     """Joints that are turned in the bind pose, a root that hangs on another joint, a clip of another rate."""
     rng = np.random.default_rng(5)
     avatar = synthetic_avatar(3, wavelet=wavelet)
     turns, places = rotation.normalize(rng.normal(size=(3, 4))), rng.normal(size=(3, 3))
     parents = avatar.rig.skeleton.parents
     skeleton = Skeleton(("hook", "root", "tip"), parents, turns, places, root=1)
-    encoding = PoseEncoding(joints=(0, 2), rate=24.0, heading=heading, translated=(2,))
+    encoding = PoseEncoding(joints=(0, 2), rate=24.0, remove_heading=remove_heading, translated=(2,))
     assert encoding.width == avatar.encoding.width
     clip = replace(synthetic_clip(skeleton, rng, frames=12), rate=rate)
     rig = replace(avatar.rig, skeleton=skeleton)
@@ -104,32 +104,32 @@ def assert_same_keys(found: Array, expected: Array) -> None:
     assert np.mean(found != expected) <= 0.01
 
 
-@pytest.mark.parametrize("heading", [True, False])
+@pytest.mark.parametrize("remove_heading", [True, False])
 @pytest.mark.parametrize("storage", STORAGES)
-def test_a_decoder_written_from_the_page_decodes_alike(tmp_path: Path, storage: Storage, heading: bool) -> None:
+def test_a_decoder_written_from_the_page_decodes_alike(tmp_path: Path, storage: Storage, remove_heading: bool) -> None:
     path = tmp_path / "a.muaavatar"
-    write(path, turned_avatar(heading=heading), storage=storage)
+    write(path, turned_avatar(remove_heading=remove_heading), storage=storage)
     assert_decodes_alike(path, frames=4)
 
 
 @pytest.mark.parametrize("rate", [24.0, 7.5, 60.0])
 def test_clips_of_any_rate_are_resampled_as_the_page_says(tmp_path: Path, rate: float) -> None:
     path = tmp_path / "a.muaavatar"
-    write(path, turned_avatar(heading=True, rate=rate), storage="f16")
+    write(path, turned_avatar(remove_heading=True, rate=rate), storage="f16")
     assert_decodes_alike(path, frames=3)
 
 
 @pytest.mark.parametrize("wavelet", ["bior1.1", "bior2.2", "bior6.8"])
 def test_textures_of_any_wavelet_are_those_of_pywt(tmp_path: Path, wavelet: str) -> None:
     path = tmp_path / "a.muaavatar"
-    write(path, turned_avatar(heading=True, wavelet=wavelet), storage="f32")
+    write(path, turned_avatar(remove_heading=True, wavelet=wavelet), storage="f32")
     assert_decodes_alike(path, frames=2)
 
 
 @pytest.mark.parametrize("turn", [[0.0, 1, 0, 0], [0.0, 0.6, 0, 0.8]])
 def test_a_root_without_twist_has_no_heading(tmp_path: Path, turn: list[float]) -> None:
     """Upside down about a horizontal axis, relative to the bind pose."""
-    avatar = turned_avatar(heading=True, rate=24.0)
+    avatar = turned_avatar(remove_heading=True, rate=24.0)
     clip, skeleton = avatar.clips[0], avatar.rig.skeleton
     bind = skeleton.world(skeleton.bind_rotations, skeleton.bind_translations)[0]
     rotations = clip.rotations.copy()
@@ -143,7 +143,7 @@ def test_a_root_without_twist_has_no_heading(tmp_path: Path, turn: list[float]) 
 @pytest.mark.parametrize("reach", [0.0, 0.5, 3.0])
 def test_poses_outside_of_training_are_held_alike(tmp_path: Path, reach: float) -> None:
     """Random turns of every joint, at 0 the bind pose; how far outside is the same number."""
-    avatar, rng = turned_avatar(heading=True, rate=24.0), np.random.default_rng(7)
+    avatar, rng = turned_avatar(remove_heading=True, rate=24.0), np.random.default_rng(7)
     write(tmp_path / "a.muaavatar", avatar, storage="f32")
     tree, bind = file.load(tmp_path / "a.muaavatar"), avatar.rig.skeleton.bind_rotations
     turns = rotation.from_axis_angle(rotation.normalize(rng.normal(size=(3, 3, 3))), reach * rng.normal(size=(3, 3)))
@@ -184,7 +184,7 @@ def test_coarser_levels_decode_alike(tmp_path: Path, wavelet: str, level: int) -
         [0.7],
         [0.9],
     ]
-    avatar = with_one_sided(turned_avatar(heading=True, wavelet=wavelet), one_sided)
+    avatar = with_one_sided(turned_avatar(remove_heading=True, wavelet=wavelet), one_sided)
     write(path, with_texels(avatar, some), storage="f16")
     assert len(file.load(path)["texels"]["levels"]) == coarsest(read(path)) == 2
     assert_decodes_alike(path, frames=2, level=level)

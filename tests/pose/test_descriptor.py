@@ -65,7 +65,7 @@ def slow_descriptor(skeleton: Skeleton, encoding: PoseEncoding, clip: Clip, f: i
 
     turn, position = root(f)
     back = np.eye(3)
-    if encoding.heading:
+    if encoding.remove_heading:
         # The twist about Y is the rotation about Y nearest to `turn`: its angle maximises trace(R_y(angle)^T turn).
         back = Rotation.from_euler("y", -np.arctan2(turn[0, 2] - turn[2, 0], turn[0, 0] + turn[2, 2])).as_matrix()
     turns = [back @ world(clip.rotations[f], j) @ world(skeleton.bind_rotations, j).T for j in encoding.joints]
@@ -81,13 +81,18 @@ def slow_descriptor(skeleton: Skeleton, encoding: PoseEncoding, clip: Clip, f: i
     return np.concatenate(parts)
 
 
-@pytest.mark.parametrize("heading", [True, False])
+@pytest.mark.parametrize("remove_heading", [True, False])
 @pytest.mark.parametrize(("window", "joints"), [(3, (2, 4)), (1, (3,)), (5, ()), (9, (2, 3, 4))])
 @pytest.mark.parametrize("translated", [(), (3,), (2, 4)])
 def test_holds_what_the_encoding_declares(
-    skeleton: Skeleton, clip: Clip, heading: bool, window: int, joints: tuple[int, ...], translated: tuple[int, ...]
+    skeleton: Skeleton,
+    clip: Clip,
+    remove_heading: bool,
+    window: int,
+    joints: tuple[int, ...],
+    translated: tuple[int, ...],
 ) -> None:
-    encoding = PoseEncoding(joints, 30.0, window, heading, translated)
+    encoding = PoseEncoding(joints, 30.0, window, remove_heading, translated)
     found = describe(skeleton, encoding, clip.rotations, clip.translations)
     assert found.shape == (FRAMES, encoding.width)
     assert found.dtype == np.float64
@@ -95,9 +100,9 @@ def test_holds_what_the_encoding_declares(
     np.testing.assert_allclose(found, expected, atol=BOUND)
 
 
-@pytest.mark.parametrize("heading", [True, False])
-def test_a_window_gives_the_numbers_of_its_clip(skeleton: Skeleton, clip: Clip, heading: bool) -> None:
-    encoding = PoseEncoding((2, 3), 30.0, 3, heading, (4,))
+@pytest.mark.parametrize("remove_heading", [True, False])
+def test_a_window_gives_the_numbers_of_its_clip(skeleton: Skeleton, clip: Clip, remove_heading: bool) -> None:
+    encoding = PoseEncoding((2, 3), 30.0, 3, remove_heading, (4,))
     whole = describe(skeleton, encoding, clip.rotations, clip.translations)
     for f in range(FRAMES):
         newest_first = np.maximum(f - np.arange(3), 0)
@@ -126,9 +131,9 @@ def moved(skeleton: Skeleton, clip: Clip, yaw: float, shift: np.ndarray) -> Clip
     return Clip(clip.name, clip.rate, rotations, translations)
 
 
-@pytest.mark.parametrize("heading", [True, False])
-def test_does_not_depend_on_the_place(skeleton: Skeleton, clip: Clip, heading: bool) -> None:
-    encoding = PoseEncoding((2, 3), 30.0, 3, heading, (3, 4))
+@pytest.mark.parametrize("remove_heading", [True, False])
+def test_does_not_depend_on_the_place(skeleton: Skeleton, clip: Clip, remove_heading: bool) -> None:
+    encoding = PoseEncoding((2, 3), 30.0, 3, remove_heading, (3, 4))
     elsewhere = moved(skeleton, clip, 0.0, np.array([5.0, -2, 3]))
     found = describe(skeleton, encoding, elsewhere.rotations, elsewhere.translations)
     np.testing.assert_allclose(found, describe(skeleton, encoding, clip.rotations, clip.translations), atol=BOUND)
@@ -136,11 +141,11 @@ def test_does_not_depend_on_the_place(skeleton: Skeleton, clip: Clip, heading: b
 
 def test_depends_on_the_facing_only_without_heading(skeleton: Skeleton, clip: Clip) -> None:
     elsewhere = moved(skeleton, clip, 2.5, np.array([5.0, -2, 3]))
-    for heading in (True, False):
-        encoding = PoseEncoding((2, 3), 30.0, 3, heading, (3, 4))
+    for remove_heading in (True, False):
+        encoding = PoseEncoding((2, 3), 30.0, 3, remove_heading, (3, 4))
         found = describe(skeleton, encoding, elsewhere.rotations, elsewhere.translations)
         here = describe(skeleton, encoding, clip.rotations, clip.translations)
-        assert (np.abs(found - here).max() < BOUND) == heading
+        assert (np.abs(found - here).max() < BOUND) == remove_heading
 
 
 def test_heading_of_a_half_turn_across_y_is_none() -> None:

@@ -40,7 +40,7 @@ def test_the_picture_is_the_reference_renderers(count: int) -> None:
 
 
 def test_a_large_splat_beside_the_picture_is_drawn_as_by_the_reference_renderer() -> None:
-    """Whose middle lies so far out that its shape is that of a nearer one."""
+    """Its middle lies so far out that its shape is taken nearer to the image."""
     splats = random_splats(40)
     aside = splats.centres * [2.2, 1.5, 1]
     splats = replace(splats, centres=aside, scales=np.full_like(splats.scales, 0.4) * [1, 0.3, 0.1])
@@ -50,7 +50,7 @@ def test_a_large_splat_beside_the_picture_is_drawn_as_by_the_reference_renderer(
 
 
 def test_splats_are_seen_shaped_and_ordered_as_by_the_reference_kernels() -> None:
-    """By a camera whose middle is off its image's, with splats thinner than a pixel, far aside, and in one place."""
+    """The camera's principal point is off centre; splats are thinner than a pixel, far aside, and in one place."""
     splats = random_splats(400)
     centres = splats.centres * np.where(np.arange(400) % 3 == 0, 2.0, 1.0)[:, None]
     centres[200:300] = centres[:100]  # of which the later lies before the earlier
@@ -95,7 +95,7 @@ def test_one_sided_splats_are_left_out_where_the_reference_leaves_them_out() -> 
 
 @pytest.mark.parametrize("screen", [(1, 1), (9, 5)])
 def test_the_shares_of_a_pixel_add_up_to_what_is_covered(screen: tuple[int, int]) -> None:
-    """In more than one pixel, the largest shares are at least the mean's."""
+    """Over more than one pixel, the sum of the largest shares is at least the mean coverage."""
     drawn_splats = random_splats(800)
     splats = in_torch(drawn_splats)
     eye, bounds = Eye.of(camera(screen), splats.centres), torch.tensor(drawn_splats.bounds)

@@ -79,7 +79,7 @@ def test_terms_on_the_other_hemisphere_change_nothing(avatar: Avatar, decoded: S
 
 
 def test_terms_far_apart_are_blended_about_that_of_the_largest_weight(avatar: Avatar) -> None:
-    """As by the reference: with turns all over, which term others are turned to decides what comes out."""
+    """With rotations all over, the term that sets the signs of the others decides the result, as in the reference."""
     rng = np.random.default_rng(3)
     rig, mesh = avatar.rig, avatar.rig.mesh
     indices = rng.permuted(np.tile(np.arange(len(rig.skeleton.names)), (len(mesh.vertices), 1)), axis=1)

@@ -87,7 +87,7 @@ def test_gsplat_draws_what_our_rasteriser_draws() -> None:
 
 
 @pytest.mark.usefixtures("stand_in")
-def test_a_lesson_chooses_what_draws_it() -> None:
+def test_training_views_are_drawn_by_the_rasteriser_asked_for() -> None:
     splats = in_torch(random_splats(20))
     eyes = [Eye.of(camera(screen), splats.centres) for screen in ((20, 16), (12, 24))]
     by_gsplat = draw_views(splats, eyes, by="gsplat")
@@ -109,7 +109,7 @@ def test_a_shifted_principal_point_is_kept() -> None:
     torch.testing.assert_close(opencv[:2] / opencv[2], torch.stack([column, row]))
 
 
-def test_gsplat_that_is_not_installed_is_a_sentence(
+def test_reports_that_gsplat_is_not_installed(
     tmp_path: Path, command: Commands, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(settings.PRESETS, "tiny", FEW)  # it would take long, were it to begin
@@ -118,7 +118,7 @@ def test_gsplat_that_is_not_installed_is_a_sentence(
     assert "--rasteriser gsplat: the Python package gsplat is not installed; pip install gsplat" in said
 
 
-def test_gsplat_without_a_gpu_is_a_sentence(
+def test_rejects_gsplat_without_a_gpu(
     tmp_path: Path, command: Commands, stand_in: None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("mua.baking.train_teacher.find_spec", lambda name: name)

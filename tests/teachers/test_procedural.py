@@ -40,7 +40,7 @@ def _components(faces: Array, count: int) -> Array:
 
 
 def _capped(faces: Array, vertices: Array) -> tuple[Array, Array]:
-    """The same surface with a fan over every open edge loop."""
+    """The surface with a fan over every open edge loop."""
     edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     present = set(map(tuple, edges.tolist()))
     rim = np.array([edge for edge in present if edge[::-1] not in present]).reshape(-1, 2)

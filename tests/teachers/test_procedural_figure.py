@@ -1,6 +1,6 @@
 """The procedural figure is the same in every release: docs and the bars of the demo's quality were measured with it.
 
-Who changes the figure writes the golden file anew: python tests/teachers/test_procedural_figure.py
+After a change of the figure, write the golden file anew: python tests/teachers/test_procedural_figure.py
 """
 
 from pathlib import Path

@@ -135,11 +135,11 @@ def test_without_simulation_a_squash_is_in_the_surface_too() -> None:
     squash = np.diag([1.2, 0.7, 1.2])
     held = still(character, frames=1)
     stretches = Stretches(np.arange(3), np.tile(squash, (1, 3, 1, 1)))
-    taught = StillTeacher(character, texels=2 * SIZE).frame(
+    frame = StillTeacher(character, texels=2 * SIZE).frame(
         Pose(held.rotations[0], held.translations[0] @ squash), stretches
     )
     expected = character.mesh.vertices[vertex] @ squash
-    np.testing.assert_allclose(posed(teacher.rig, taught)[0][at_vertex], expected, atol=SINGLE)
+    np.testing.assert_allclose(posed(teacher.rig, frame)[0][at_vertex], expected, atol=SINGLE)
 
 
 @pytest.mark.usefixtures("unsunk")
@@ -220,7 +220,7 @@ def test_quaternions_are_unit_and_on_the_hemisphere_of_the_bind_pose(teacher: Si
 
 
 def test_surfels_lie_in_the_posed_surface(teacher: SimulatedTeacher) -> None:
-    """Their z axes against normals from differences of neighbouring splats' centres."""
+    """Compares their z axes with normals from differences of neighbouring splats' centres."""
     rig = teacher.rig
     flat = np.full(SIZE * SIZE, -1)
     flat[rig.texels.texels] = np.arange(len(rig.texels.texels))
@@ -295,7 +295,7 @@ def simulated_vertices(character: Character, clip: Clip) -> list[np.ndarray]:
 
 
 @pytest.mark.parametrize("factor", [2.0**-7, 2.0**5])  # 14 mm and 56 m high
-def test_a_figure_of_any_size_is_taught_alike(factor: float) -> None:
+def test_a_figure_of_any_size_moves_alike(factor: float) -> None:
     person = tube(looseness=0.6)
     skeleton = replace(person.skeleton, bind_translations=factor * person.skeleton.bind_translations)
     mesh = replace(person.mesh, vertices=factor * person.mesh.vertices)

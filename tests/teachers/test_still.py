@@ -85,7 +85,7 @@ def drawn(character: Character, size: int) -> Array:
 
 
 def even(picture: Array) -> Sharpness:
-    """What an image asks for that is even."""
+    """The surfels that an even image asks for."""
     count = (len(picture) // 2) ** 2
     return Sharpness(np.full(count, SPREAD), np.tile([1.0, 0], (count, 1)), np.zeros(count))
 
@@ -99,7 +99,7 @@ def test_stripes_are_sharper_than_round_surfels_of_one_width_show_them(monkeypat
 
 
 def test_lines_of_a_picture_change_nothing_that_moves() -> None:
-    """The turn along a line is the same in all poses, so that what a student has to learn stays as smooth."""
+    """The turn along a line is the same in all poses, so that textures over time stay as smooth."""
     plain = tube(rings=29, sides=40)
     bent = plain.skeleton.bind_pose.rotations.copy()
     bent[-1] = [np.cos(0.4), np.sin(0.4), 0, 0]

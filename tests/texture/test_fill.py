@@ -67,7 +67,7 @@ def test_linear_ramp_is_approximated_in_a_hole() -> None:
 
 
 def test_is_smooth_across_the_wrap() -> None:
-    """Of a strip in the middle, the empty columns left and right meet without a jump where the texture wraps."""
+    """Beside a strip in the middle, the empty columns left and right meet without a jump where the texture wraps."""
     size = 64
     valid = np.zeros((size, size), bool)
     valid[:, 16:48] = True

@@ -42,7 +42,7 @@ def graded(widths: np.ndarray, height: float, *, size: float = 1.0) -> Mesh:
 
 
 def least_coverage(mesh: Mesh, *, border: float = 0.05) -> float:
-    """Of points farther inside the surface's outline than a share of its width: at the outline itself half is right."""
+    """The least over points a share of the width inside the surface's outline: at the outline itself half is right."""
     _, found, places = laid(mesh)
     triangles, barycentrics = spread_points(mesh, 4000)
     points = np.einsum("nk,nkc->nc", barycentrics, mesh.vertices[mesh.faces[triangles]])

@@ -13,7 +13,7 @@ SINGLE = 64 * float(np.finfo(np.float32).eps)  # a few products of float32
 
 
 def wanted_by(gray: Array, alpha: int = 255) -> Sharpness:
-    """What an image of greys [S, S] asks for."""
+    """The surfels that an image of greys [S, S] asks for."""
     channels = [gray, gray, gray, np.full_like(gray, alpha)]
     return sharpness(finer_picture(np.stack(channels, axis=2).astype(np.uint8), SIZE))
 

@@ -68,7 +68,7 @@ def test_footprint_is_the_distance_of_texels() -> None:
 
 
 def surrounded(texels: np.ndarray) -> np.ndarray:
-    """Which texels have all eight neighbours: those of a chart's border reach out to it."""
+    """Whether texels have all eight neighbours; surfels at a chart's border reach out to it."""
     grid = np.zeros((SIZE + 2, SIZE + 2), int)
     row, column = np.divmod(texels, SIZE)
     grid[row + 1, column + 1] = 1

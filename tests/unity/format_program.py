@@ -53,7 +53,7 @@ def values(tree: Tree) -> dict[str, tuple[str, bytes]]:
         "skeleton.translated": joints_of(tree["skeleton"]),
         "encoding.translated": joints_of(tree["encoding"]),
         "encoding.joints": encoding.joints,
-        "encoding.window": (encoding.window, encoding.heading),
+        "encoding.window": (encoding.window, encoding.remove_heading),
         "wavelet.levels": wavelet.levels,
     }
     if avatar.surface:

@@ -39,7 +39,13 @@ def program(csharp: CSharp) -> Path:
 
 
 def avatar_of(
-    *, heading: bool, window: int, rate: float, clips: Sequence[tuple[float, int]], reach: float = 1, roam: float = 1
+    *,
+    remove_heading: bool,
+    window: int,
+    rate: float,
+    clips: Sequence[tuple[float, int]],
+    reach: float = 1,
+    roam: float = 1,
 ) -> Avatar:
     """The synthetic avatar on a skeleton whose root joint has a turned parent, with clips of (rate, frames).
 
@@ -53,7 +59,7 @@ def avatar_of(
         bind_translations=rng.normal(size=(3, 3)),
         root=1,
     )
-    encoding = PoseEncoding(joints=(0, 2), rate=rate, window=window, heading=heading, translated=(2,))
+    encoding = PoseEncoding(joints=(0, 2), rate=rate, window=window, remove_heading=remove_heading, translated=(2,))
     return replace(
         avatar,
         rig=replace(avatar.rig, skeleton=skeleton),
@@ -92,7 +98,7 @@ def random_clip(skeleton: Skeleton, rng: np.random.Generator, rate: float, frame
 
 def upside_down() -> Avatar:
     """A root that is turned over, which leaves no heading, or next to none: what is smaller than rounding is none."""
-    avatar = avatar_of(heading=True, window=2, rate=24, clips=[(24, 5)])
+    avatar = avatar_of(remove_heading=True, window=2, rate=24, clips=[(24, 5)])
     turns = [[0, 1, 0, 0], [1e-6, 1, 0, -2e-6], [0, 0, 1, 0], [1e-10, 1, 0, 1e-10], [-3e-7, 0.6, 1e-6, 0.8]]
     clip = avatar.clips[0]
     clip.rotations[:, 0] = [1, 0, 0, 0]
@@ -102,19 +108,19 @@ def upside_down() -> Avatar:
 
 
 CASES = {
-    "own rate": (avatar_of(heading=True, window=3, rate=24, clips=[(24, 5), (24, 1)]), "f32"),
-    "other rates": (avatar_of(heading=True, window=3, rate=24, clips=[(30, 11), (23.976, 9), (120, 41)]), "f32"),
-    "ends that rounding moves": (avatar_of(heading=True, window=3, rate=100, clips=[(25, 30), (50, 59)]), "f32"),
+    "own rate": (avatar_of(remove_heading=True, window=3, rate=24, clips=[(24, 5), (24, 1)]), "f32"),
+    "other rates": (avatar_of(remove_heading=True, window=3, rate=24, clips=[(30, 11), (23.976, 9), (120, 41)]), "f32"),
+    "ends that rounding moves": (avatar_of(remove_heading=True, window=3, rate=100, clips=[(25, 30), (50, 59)]), "f32"),
     "turned over": (upside_down(), "f32"),
-    "halves": (avatar_of(heading=True, window=2, rate=24, clips=[(24, 6), (60, 13)]), "f16"),
-    "no heading": (avatar_of(heading=False, window=3, rate=30, clips=[(24, 7)]), "f32"),
-    "one frame": (avatar_of(heading=True, window=1, rate=30, clips=[(30, 4)]), "f32"),
-    "within training": (avatar_of(heading=True, window=3, rate=24, clips=[(24, 9)], reach=1e3), "f32"),
+    "halves": (avatar_of(remove_heading=True, window=2, rate=24, clips=[(24, 6), (60, 13)]), "f16"),
+    "no heading": (avatar_of(remove_heading=False, window=3, rate=30, clips=[(24, 7)]), "f32"),
+    "one frame": (avatar_of(remove_heading=True, window=1, rate=30, clips=[(30, 4)]), "f32"),
+    "within training": (avatar_of(remove_heading=True, window=3, rate=24, clips=[(24, 9)], reach=1e3), "f32"),
     "far outside of training": (
-        avatar_of(heading=True, window=3, rate=24, clips=[(24, 60)], reach=0.1, roam=50),
+        avatar_of(remove_heading=True, window=3, rate=24, clips=[(24, 60)], reach=0.1, roam=50),
         "f32",
     ),
-    "longest window": (avatar_of(heading=True, window=16, rate=24, clips=[(24, 20)]), "f32"),
+    "longest window": (avatar_of(remove_heading=True, window=16, rate=24, clips=[(24, 20)]), "f32"),
 }
 
 

@@ -127,7 +127,7 @@ def test_mutants_are_refused_alike(tmp_path: Path, content: bytes) -> None:
 
 def faster(avatar: Avatar) -> Avatar:
     """With a clip that is not at the rate of the encoding, whose descriptors keep the heading."""
-    encoding = replace(avatar.encoding, heading=not avatar.encoding.heading)
+    encoding = replace(avatar.encoding, remove_heading=not avatar.encoding.remove_heading)
     return replace(avatar, clips=(replace(avatar.clips[0], rate=17.0),), encoding=encoding)
 
 

@@ -57,7 +57,7 @@ OPTIONS: dict[str, dict[str, float]] = {
     "input noise 1": {"noise": 1.0},
     "no weight decay": {"weight_decay": 0.0},
     "weight decay 0.01": {"weight_decay": 1e-2},
-    "heading kept": {"heading": False},
+    "heading kept": {"remove_heading": False},
     "fine-tuned at 3e-4": {"lr": 3e-4},
     f"{LONGER}x fine-tuning": {"longer": LONGER},
 }

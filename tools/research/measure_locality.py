@@ -36,12 +36,12 @@ CUTS = (1, 2, 3)
 def main(
     recording: Annotated[Path, typer.Argument(help="Recording with several training clips.")],
     leave: Annotated[list[str], typer.Option(help="Training clip to leave out, may be repeated.")],
-    heading: Annotated[bool, typer.Option(help="Turn the descriptor back by the heading.")] = True,
+    remove_heading: Annotated[bool, typer.Option(help="Remove the heading from the descriptor.")] = True,
 ) -> None:
     """Print a Markdown table of explained shares."""
     opened = Recording(recording)
     settings = replace(preset("tiny"), texels=opened.rig.texels.size)
-    settings = replace(settings, generalisation=replace(settings.generalisation, heading=heading))
+    settings = replace(settings, generalisation=replace(settings.generalisation, remove_heading=remove_heading))
     student, samples = prepare(opened, settings)
     assert samples.parts is not None  # the default is local
     left = left_out(opened, leave)

@@ -207,7 +207,7 @@ def _encoding(tree: Tree, skeleton: Skeleton, among: Array) -> PoseEncoding:
         joints=tuple(int(j) for j in joints),
         rate=_rate(tree["rate"], "encoding.rate"),
         window=tree["window"],
-        heading=tree["heading"],
+        remove_heading=tree["heading"],
         translated=tuple(int(j) for j in translated),
     )
 

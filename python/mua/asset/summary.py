@@ -77,6 +77,6 @@ def _descriptor(avatar: Avatar) -> dict[str, Any]:
         "rate": encoding.rate,
         "joints": [names[joint] for joint in encoding.joints],
         "translated": [names[joint] for joint in encoding.translated],
-        "heading_removed": bool(encoding.heading),
+        "heading_removed": bool(encoding.remove_heading),
         "components": len(avatar.components.margins),
     }

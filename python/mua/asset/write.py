@@ -149,7 +149,7 @@ def _encoding(encoding: PoseEncoding, components: Components, element: Element) 
         "order": "NewestFirst",
         "window": encoding.window,
         "rate": encoding.rate,
-        "heading": encoding.heading,
+        "heading": encoding.remove_heading,
         "mean": pack(components.normalization.mean),
         "scale": pack(components.normalization.scale),
         "components": pack(components.directions, _half(element)),

@@ -11,13 +11,15 @@ from mua.rig.texel_map import cover
 CELL = 128  # texels along the square in which a chart is searched for overlap
 CELLS_SIZE = 2048  # texels along all these squares together
 
-STARVED = 1 / 6  # of its chart's texels for each square metre
+STARVED = 1 / 6  # of its chart's texel density: a triangle below it is starved
 SMOOTHING = 3  # rounds over neighbours
-PATCH = 0.01  # of the character's surface
-SCATTERED = 0.02  # of it: more than this in small patches, as of colours from a palette, counts as well
+PATCH = 0.01  # share of the character's surface from which on a starved patch counts
+SCATTERED = 0.02  # share of the surface from which on small patches count together, as colours from a palette do
 PULLED = 2.5  # surface over drawing, in the direction in which a triangle is drawn too short for its chart
-DISTORTED = 0.15  # of a chart's surface
-MOST_EVENED = 1.5  # of length: what a chart is enlarged by beyond its best linear map, lest a fold in it rules it
+DISTORTED = 0.15  # share of a chart's surface that may be pulled
+MOST_EVENED = (
+    1.5  # in length: most that a chart grows beyond its best linear map, or a fold in it would decide its size
+)
 
 
 def overlapping(

@@ -1,4 +1,4 @@
-"""How much finer than elsewhere the texels of a part of the body are."""
+"""How much finer the texels of a body part are than elsewhere."""
 
 from collections.abc import Mapping, Sequence
 from typing import Literal, TypeAlias

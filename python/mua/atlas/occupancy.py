@@ -75,7 +75,7 @@ def each_bit(bits: Array) -> Array:
 def beside(
     free: Array,  # [rows, stride] bytes
 ) -> Array:
-    """Those free places that have a neighbour which is not free."""
+    """The free places that have a neighbour which is not free."""
     stride, cells = free.shape[1], free.ravel()
     left, right = cells << 1, cells >> 1
     left[1:] |= cells[:-1] >> (BITS - 1)

@@ -40,8 +40,8 @@ def without_unseen(surfaces: Surfaces) -> Surfaces:
         raise InputError(f"{surfaces.name}: the alpha of every material is 0, expected a visible one")
     of_hidden = ~np.isin(surfaces.face_material, np.unique(surfaces.face_material[seen]))
     clear = np.count_nonzero(~seen & ~of_hidden)
-    told = [f"{clear:,} triangles that are fully transparent are left out."] if clear else []
-    return replace(_only(surfaces, seen), notes=(*surfaces.notes, *hidden, *told))
+    notes = [f"{clear:,} triangles that are fully transparent are left out."] if clear else []
+    return replace(_only(surfaces, seen), notes=(*surfaces.notes, *hidden, *notes))
 
 
 def cut_out(

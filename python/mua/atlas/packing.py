@@ -17,7 +17,7 @@ from mua.rig.charts import areas
 FULL = 0.93  # share of the square which charts and half of their gutters would fill; what does not fit goes beyond
 TRIES = ((False, 1.0), (True, 1.0), (False, 0.93), (True, 1.06))  # from the largest box instead? what share of FULL?
 CHARTS_TRIED = 250  # in all tries together
-LARGE = 0.004  # of the cells: a chart that is turned by half a right angle too
+LARGE = 0.004  # share of the cells from which on a chart is also tried turned by half a right angle
 CRUMB = 8  # cells along the longer side of a chart with its gutters that is taken for its box
 SMALLER = 0.95  # each time that something fits nowhere
 

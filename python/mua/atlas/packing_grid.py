@@ -35,7 +35,7 @@ class Place:
 
 
 class PackingGrid:
-    """What is taken of the grid, and how wide the square around it is."""
+    """The taken cells of the grid, and the side of the square around them."""
 
     def __init__(self, longest: int, count: int) -> None:
         """`longest` cells are the longest run of any shape; `count` of the smallest fit, however many these are."""

@@ -57,8 +57,8 @@ def build_atlas(surfaces: Surfaces, *, uv: UvMode, size: int, detail: Detail | N
     if uv == "keep":
         layout = _keep(source)
         trouble = _trouble(source, layout)
-        told = (f"The UV layout was kept although {trouble}.",) if trouble else ()
-        layout = _Layout(layout.corners, layout.as_is, told)
+        notes = (f"The UV layout was kept although {trouble}.",) if trouble else ()
+        layout = _Layout(layout.corners, layout.as_is, notes)
     else:
         wound = overlapping(source.corners, source.charts)[source.charts] > LOSS_ALLOWED
         anew = wound | source.starved if uv == "auto" else np.ones(len(source.charts), bool)
@@ -102,7 +102,7 @@ def _keep(source: _Source) -> _Layout:
 
 
 def _trouble(source: _Source, layout: _Layout) -> str | None:
-    """What a layout loses, as the end of a sentence; None where that is little."""
+    """What a layout loses, as the end of a sentence; None where it loses little."""
     if not source.present.all():
         return f"{np.count_nonzero(~source.present):,} of its {len(source.present):,} triangles have no UVs"
     owner, claims = cover(layout.corners * JUDGED_SIZE, JUDGED_SIZE)
@@ -135,16 +135,16 @@ def _lay_out(
     cut, kept = len(np.unique(charts[anew])), len(np.unique(charts[~anew]))
     charts, finer = split_by_factor(nodes, corners, charts=charts, surface=surface, finer=finer)
     flat = even(corners, source.positions, charts) * finer[:, None, None]
-    return _Layout(pack(flat, charts), as_is=False, notes=(_told(anew, kept=kept, cut=cut), *absent))
+    return _Layout(pack(flat, charts), as_is=False, notes=(_note(anew, kept=kept, cut=cut), *absent))
 
 
-def _told(
+def _note(
     anew: Array,  # [F] bool
     *,
     kept: int,
     cut: int,
 ) -> str:
-    """What has become of the file's charts."""
+    """A sentence on what was done to the file's charts."""
     if not kept:
         return f"All {len(anew):,} triangles are cut into {cut} new UV charts."
     note = f"{kept} charts of the file's UV layout are kept, at one density of texels"

@@ -30,7 +30,7 @@ HEADINGS = 4  # that training clips are recorded at, the filmed one included
 
 def taught_settings(settings: Settings, texels: int) -> Settings:
     """Settings of a student of such a teacher."""
-    return replace(settings, texels=texels, generalisation=replace(settings.generalisation, heading=False))
+    return replace(settings, texels=texels, generalisation=replace(settings.generalisation, remove_heading=False))
 
 
 def filmed_clips(capture: Capture) -> list[Clip]:

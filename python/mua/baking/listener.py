@@ -1,11 +1,11 @@
-"""Who hears what a bake or a training does."""
+"""Progress callbacks of a bake or a training, and two listeners: one logs, one does nothing."""
 
 import logging
 from typing import Protocol
 
 
 class Listener(Protocol):
-    """Hears what a bake or a training does; the command line shows it."""
+    """Progress callbacks of a bake or a training; the command line shows them."""
 
     def stage(self, name: str) -> None: ...
 
@@ -15,11 +15,11 @@ class Listener(Protocol):
 
 
 class Log:
-    """Writes stages and notes to Python's log, under the name mua."""
+    """A listener that writes stages and notes to Python's log, under the name mua."""
 
     def __init__(self) -> None:
         self._log = logging.getLogger("mua")
-        self._begun: set[str] = set()  # two stages may take turns: each is told once
+        self._begun: set[str] = set()  # two stages may take turns: each is logged once
 
     def stage(self, name: str) -> None:
         if name not in self._begun:
@@ -34,7 +34,7 @@ class Log:
 
 
 class Nobody:
-    """Hears nothing."""
+    """A listener that does nothing."""
 
     def stage(self, name: str) -> None: ...
 

@@ -11,7 +11,7 @@ from mua.capture import open_capture
 from mua.capture.inventory import missing_files
 from mua.teachers.trained.folder import Description, save_teacher
 from mua.teachers.trained.from_capture import Filmed, Outlines, material_of, preview_of, read_filmed, refinement_of
-from mua.teachers.trained.image_losses import Lesson, Material, Perceptual
+from mua.teachers.trained.image_losses import ImageLoss, Material, Perceptual
 from mua.teachers.trained.measured import measured_surfaces
 from mua.teachers.trained.model import TeacherModel
 from mua.teachers.trained.preview import Preview
@@ -48,19 +48,19 @@ def carry_out(
     material = replace(material_of(filmed, _perceptual(weights, device)), tracks=tracks_of(filmed))
     torch.manual_seed(settings.seed)
     teacher = TeacherModel(filmed.subject, settings)
-    lesson = Lesson(teacher, material, settings, refinement=refinement_of(filmed, settings)).to(device)
+    image_loss = ImageLoss(teacher, material, settings, refinement=refinement_of(filmed, settings)).to(device)
     checkpoints = Checkpoints(output / "work", _key(filmed, settings, weights, material), processes)
     if processes.first:
         checkpoints.remove_leftovers((*TEMPLATE_STAGES, *STAGES))
     preview = preview_of(filmed, output / "progress") if processes.first else None
-    report = _Reporter(lesson, preview, listener)
+    report = _Reporter(image_loss, preview, listener)
     run = Run(torch.Generator().manual_seed(settings.seed), checkpoints, report, device, processes)
     if settings.drivable:
         own = replace(TEMPLATE, seed=settings.seed)
         seen: Observations = measured_surfaces(filmed) or Outlines(material)
         seen = Tracked(seen, material.tracks) if material.tracks else seen
         fit_template(teacher.template, seen, filmed.subject.rig, own, run=run)
-    train_teacher(lesson, material, settings, run=run)
+    train_teacher(image_loss, material, settings, run=run)
     if processes.first:
         save_teacher(output, teacher, Description(capture.name, settings, filmed.subject.encoding, filmed.roles))
 
@@ -89,8 +89,8 @@ def _perceptual(weights: Path | None, device: torch.device) -> Perceptual | None
 class _Reporter:
     """Tells a listener of stages and steps, and looks at a camera that is not learnt from now and then."""
 
-    def __init__(self, lesson: Lesson, preview: Preview | None, listener: Listener) -> None:
-        self._lesson, self._preview, self._listener = lesson, preview, listener
+    def __init__(self, image_loss: ImageLoss, preview: Preview | None, listener: Listener) -> None:
+        self._image_loss, self._preview, self._listener = image_loss, preview, listener
         self._stage, self._score = "", ""
 
     def __call__(self, progress: Progress) -> None:
@@ -101,6 +101,6 @@ class _Reporter:
             self._listener.stage(progress.stage)
         if self._preview.seen and self._preview.due(progress.step, progress.steps):
             name = f"{progress.stage.replace(' ', '_')}_{progress.step:07d}"
-            self._score = f", {self._preview(self._lesson, name, moving=progress.stage == TEXTURE):.1f} dB"
+            self._score = f", {self._preview(self._image_loss, name, moving=progress.stage == TEXTURE):.1f} dB"
         loss = f"loss {progress.loss:.4f}{self._score}"
         self._listener.step(progress.step, progress.steps, detail=f"{loss}, {progress.rate:.1f} steps/s")

@@ -8,21 +8,21 @@ from mua.capture.camera_fit import OF_ALL, Fit, drawn, in_lens, in_place, in_tim
 from mua.capture.fit import Posed, Seen, by_camera, mean_overlap
 from mua.capture.outline import overlap
 
-POOR = 0.6  # of overlap, below which outline and mask are not of the same thing
-OUTLIER = 0.75  # of the median overlap, below which a view or camera stands apart from others
-BELOW = 0.05  # of overlap under the other cameras, from which on a camera is worth a look
-TRIED = 0.03  # the same, from which on it is asked what would make it fit
-GAIN = 0.1  # of overlap, by which another frame or camera must fit a mask better
-BETTER = 0.02  # of overlap, by which another moment or place must make a camera fit better
-BENT = 0.006  # the same for a lens, which bends little where the person is
+POOR = 0.6  # overlap below which outline and mask do not show the same thing
+OUTLIER = 0.75  # share of the median overlap below which a view or camera stands apart from others
+BELOW = 0.05  # overlap by which a camera that is worth a look lies below the others
+TRIED = 0.03  # overlap by which a camera lies below the others before causes are tried
+GAIN = 0.1  # overlap by which another frame or camera must fit a mask better
+BETTER = 0.02  # overlap by which another moment or place must make a camera fit better
+BENT = 0.006  # overlap by which another lens must fit better: it bends little where the person is
 
 
 def cameras_apart(posed: Posed, views: Sequence[Seen]) -> Iterator[str]:
     """Cameras that fit worse than the others and what explains it, and views that fit worse than their camera."""
     for name, of in by_camera(views).items():
         mean, others = mean_overlap(of), _others(views, name)
-        if mean < others - TRIED and (told := _explained(posed, of, others - BELOW)) is not None:
-            yield f"Camera {name}: overlaps by {mean:.0%}, the others typically by {others:.0%}; {told}."
+        if mean < others - TRIED and (cause := _explained(posed, of, others - BELOW)) is not None:
+            yield f"Camera {name}: overlaps by {mean:.0%}, the others typically by {others:.0%}; {cause}."
         elif mean < OUTLIER * others:
             yield _camera_apart(posed, of, views, mean, others)
         else:
@@ -79,8 +79,8 @@ def _moment(fit: Fit) -> str:
 
 
 def _camera_apart(posed: Posed, of: Sequence[Seen], views: Sequence[Seen], mean: float, typical: float) -> str:
-    """Whose images these may be: those of the camera whose calibration fits them best."""
-    name, told = of[0].camera.name, f"overlaps by {mean:.0%}, a camera typically by {typical:.0%}"
+    """A sentence on a camera that fits badly, with the camera whose calibration fits its images best."""
+    name, finding = of[0].camera.name, f"overlaps by {mean:.0%}, a camera typically by {typical:.0%}"
     others = {view.camera.name: view.camera for view in views if view.camera.size == of[0].camera.size}
     fits = {
         other: float(np.mean([overlap(posed.covers(v.clip, v.frame, camera), v.mask) for v in of]))
@@ -88,18 +88,18 @@ def _camera_apart(posed: Posed, of: Sequence[Seen], views: Sequence[Seen], mean:
     }
     best = max(fits, key=lambda other: fits[other])
     if best != name and fits[best] > max(mean + GAIN, POOR):
-        return f"Camera {name}: {told}; its images fit the calibration of camera {best} by {fits[best]:.0%}."
-    return f"Camera {name}: {told}; its calibration, or which images it has, cannot be right."
+        return f"Camera {name}: {finding}; its images fit the calibration of camera {best} by {fits[best]:.0%}."
+    return f"Camera {name}: {finding}; its calibration, or which images it has, cannot be right."
 
 
 def _view_apart(posed: Posed, view: Seen, middle: float) -> str:
-    """Which frame a mask may be of."""
+    """A sentence on a view that fits badly, with the frame that its mask fits best."""
     fits = [
         overlap(posed.covers(view.clip, frame, view.camera), view.mask)
         for frame in range(len(posed.vertices[view.clip]))
     ]
     best = int(np.argmax(fits))
-    told = f"{str(view).capitalize()}: overlaps by {view.overlap:.0%}, its camera typically by {middle:.0%}"
+    finding = f"{str(view).capitalize()}: overlaps by {view.overlap:.0%}, its camera typically by {middle:.0%}"
     if best != view.frame and fits[best] > max(view.overlap + GAIN, POOR):
-        return f"{told}; the mask fits frame {best} by {fits[best]:.0%}."
-    return f"{told}; the mask or the pose cannot be right."
+        return f"{finding}; the mask fits frame {best} by {fits[best]:.0%}."
+    return f"{finding}; the mask or the pose cannot be right."

@@ -30,7 +30,7 @@ class CaptureCamera:
     held_out: bool = False
 
     def camera(self) -> Camera:
-        """The same pinhole as a view; of a distorted camera, what it would see without distortion."""
+        """The pinhole to render with; of a distorted camera, what it would see without distortion."""
         (width, height), (fx, fy), (cx, cy) = self.size, self.focal, self.centre
         projection = np.array(
             [

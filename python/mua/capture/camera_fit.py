@@ -1,4 +1,4 @@
-"""What masks say of cameras: their clock, place and lens are changed until the template fits."""
+"""Errors of cameras, estimated from masks: clock, place and lens are varied until the template fits."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ from mua.capture.lens import distorted
 from mua.capture.outline import FINER, fine_silhouette, overlap
 
 TRIED = 6  # views of a camera that other places are tried on
-OF_ALL = 2  # the same for a lens, which is tried on all cameras
+OF_ALL = 2  # views of each camera that other lenses are tried on
 LATER = 3  # frames by which a camera may be before or behind the others
 SHIFTED = 0.04  # of an image's longer side that outlines may lie beside masks
 BENDS = (-0.3, -0.2, -0.1, 0.1, 0.2)  # k1 that are tried
@@ -60,7 +60,7 @@ def drawn(posed: Posed, views: Sequence[Seen], count: int = TRIED) -> list[Drawn
 
 
 def in_time(posed: Posed, views: Sequence[Seen]) -> Fit | None:
-    """By how many frames later the poses of one camera's images are; None where too few can be compared."""
+    """The shift in frames at which poses fit one camera's images best; None where too few can be compared."""
     found = []
     for shift in (shift for shift in range(-LATER, LATER + 1) if shift):
         own = [view for view in views if 0 <= view.frame + shift < len(posed.vertices[view.clip])]

@@ -1,4 +1,4 @@
-"""What a capture is: cameras around a person, clips that they filmed, and where the files lie."""
+"""A capture: cameras around a person, clips that they filmed, and where the files lie."""
 
 import math
 from collections.abc import Sequence
@@ -58,7 +58,7 @@ class Capture:
 
     @property
     def file(self) -> Path:
-        """What describes the capture."""
+        """The capture.json that describes the capture."""
         return self.folder / CAPTURE
 
     def camera(self, name: str) -> CaptureCamera:
@@ -83,7 +83,7 @@ class Capture:
         crop: bool = False,
         rows: int | None = None,
     ) -> View:
-        """What a camera saw of a frame, without distortion: image, mask, background and the pinhole that fits them.
+        """A camera's view of a frame, without distortion: image, mask, background and the pinhole that fits them.
 
         With `crop` only the box around the mask and a margin; with `rows` as if the whole image had so many rows.
         Errors: InputError with one sentence that names the file where an image is missing or is not the camera's.
@@ -94,7 +94,7 @@ class Capture:
         return read_view(self.files(clip, frame, camera), seen, crop=crop, rows=rows)
 
     def files(self, clip: str, frame: int, camera: str) -> Files:
-        """Where a view's images lie."""
+        """The files of a view's images."""
         image, mask, background = (
             None if pattern is None else self.place(pattern, clip=clip, camera=camera, frame=frame)
             for pattern in (self.images, self.masks, self.backgrounds)
@@ -119,14 +119,14 @@ class Capture:
         return every(self.moving(clip), self.steps)
 
     def moving(self, clip: str) -> Clip:
-        """The same motion with the poses between frames: `steps` from one frame to the next."""
+        """The motion of a clip with the poses between frames: `steps` from one frame to the next."""
         filmed = self.clip(clip)
         whole = self._poses(clip, self.steps)
         return cut_poses(whole, filmed.motion, first=filmed.first, frames=filmed.frames, steps=self.steps)
 
     @property
     def steps(self) -> int:
-        """From one frame to the next, so that poses are at least as close in time as those of a window."""
+        """Poses from one frame to the next, so that they are at least as close in time as those of a window."""
         return math.ceil(RATE / self.rate)
 
     def whole_motion(self, clip: str) -> Clip:

@@ -1,4 +1,4 @@
-"""Everything that can be said of a capture before hours are spent on it."""
+"""Checks of a capture, before hours of training are spent on it."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ from mua.errors import InputError
 
 @dataclass(frozen=True, eq=False)
 class CameraFit:
-    """What was found of one camera."""
+    """The result for one camera."""
 
     camera: CaptureCamera
     views: tuple[Seen, ...]
@@ -33,13 +33,13 @@ class CameraFit:
 
     @property
     def _filled(self) -> list[Seen]:
-        """Views with the person: others count nowhere."""
+        """Views that show the person; no others count."""
         return [view for view in self.views if view.mask.any()]
 
 
 @dataclass(frozen=True, eq=False)
 class Checked:
-    """What a check found."""
+    """The result of a check."""
 
     capture: Capture
     cameras: tuple[CameraFit, ...]
@@ -58,7 +58,7 @@ def check_capture(capture: Capture, *, frames: int | None = None) -> Checked:
     """Compare the posed template with the masks of some frames in all cameras.
 
     `frames` of each clip are looked at, all for 0; None looks at a few. Errors: InputError where the template cannot be
-    read; all else is told as a problem.
+    read; all else is reported as a problem.
     """
     problems = list(missing_files(capture))
     posed = _posed(capture, problems)
@@ -93,22 +93,22 @@ def _posed(capture: Capture, problems: list[str]) -> Posed:
 
 
 def _views(capture: Capture, posed: Posed, frames: int | None, problems: list[str]) -> list[Seen]:
-    """Views of the clips that were posed; what cannot be read of a camera and clip is told once."""
-    seen, told = [], set()
+    """Views of the clips that were posed; an error is reported once for each camera and clip."""
+    seen, reported = [], set()
     for clip in capture.clips:
         for frame in chosen_frames(capture, clip, frames) if clip.name in posed.vertices else ():
             for camera in capture.cameras:
                 try:
                     seen.append(look_at(capture, posed, clip.name, frame, camera))
                 except InputError as error:
-                    if (clip.name, camera.name) not in told and not str(error).endswith("there is no such file"):
-                        told.add((clip.name, camera.name))
+                    if (clip.name, camera.name) not in reported and not str(error).endswith("there is no such file"):
+                        reported.add((clip.name, camera.name))
                         problems.append(f"Camera {camera.name}, clip {clip.name}, frame {frame}: {error}.")
     return seen
 
 
 def summary(capture: Capture) -> Sequence[str]:
-    """What a capture is understood to be, a line each."""
+    """The content of a capture as it is understood, line by line."""
     held_out = [camera.name for camera in capture.cameras if camera.held_out]
     clips = [
         f"{clip.name} ({clip.frames} frames, poses {clip.first} to {clip.first + clip.frames - 1}"

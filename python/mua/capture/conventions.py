@@ -1,4 +1,4 @@
-"""What calibrations of other tools mean differently: axes, units and directions, tried until the template fits."""
+"""Conventions of other tools' calibrations: axes, units and directions, tried until the template fits."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -39,16 +39,16 @@ class Convention:
 
     @property
     def count(self) -> int:
-        """How many things are different."""
+        """How many of the four differ from ours."""
         return self.inverse + self.opengl + (self.length != 1) + (not np.array_equal(self.world, np.eye(3)))
 
     def __str__(self) -> str:
-        told = ["the matrices are camera_to_world, expected their inverse"] if self.inverse else []
-        told += ["the cameras' axes are OpenGL's (y up, z back)"] if self.opengl else []
+        differences = ["the matrices are camera_to_world, expected their inverse"] if self.inverse else []
+        differences += ["the cameras' axes are OpenGL's (y up, z back)"] if self.opengl else []
         if not np.array_equal(self.world, np.eye(3)):
             rows = [f"{'-' if row.sum() < 0 else ''}{LETTERS[int(np.abs(row).argmax())]}" for row in self.world]
-            told.append(f"the calibration's world has other axes: its X, Y, Z are our {', '.join(rows)}")
-        return " and ".join([*told, *([LENGTHS[self.length]] if self.length != 1 else [])])
+            differences.append(f"the calibration's world has other axes: its X, Y, Z are our {', '.join(rows)}")
+        return " and ".join([*differences, *([LENGTHS[self.length]] if self.length != 1 else [])])
 
 
 def read_axes(text: str) -> Array:

@@ -1,4 +1,4 @@
-"""What cannot be right in a capture, from how the template fits the masks: a sentence each, most of all first."""
+"""Problems of a capture, by how the template fits the masks: a sentence for each."""
 
 from collections.abc import Iterator, Mapping, Sequence
 
@@ -14,50 +14,50 @@ from mua.capture.tracks import PointTracks, read_tracks
 from mua.errors import InputError
 
 GOOD = 0.8  # mean overlap that a skinned template reaches also with loose clothes
-SHIFT_GAIN = 0.03  # the same for all views of a clip together
+SHIFT_GAIN = 0.03  # overlap by which other poses must fit all views of a clip better
 FAR = 100.0  # metres from the template to cameras, beyond which lengths have another unit
 FARTHEST_SHIFT = 30  # frames by which images and poses may be apart
 BESIDE = 0.1  # of the template's height, beyond which tracked points are not on it
 TRACKED = 200  # points that are looked at
-TRIED = 6  # views that such shifts are tried on
+TRIED = 6  # views that shifts are tried on
 
 
 def unlikely(capture: Capture, posed: Posed, views: Sequence[Seen]) -> list[str]:
-    """All that is unlikely to be meant; where one thing explains all the rest, it alone."""
-    told = list(_empty(views))
+    """All problems that were found; where one cause explains the others, it alone."""
+    problems = list(_empty(views))
     filled = [view for view in views if view.mask.any()]
     inverted = _inverted(filled)
-    told += _inverted_told(inverted, filled)
+    problems += _inverted_masks(inverted, filled)
     filled = [view for view in filled if view.camera.name not in inverted]
     if mean_overlap(filled) < POOR and filled and (found := better_convention(posed, filled)) is not None:
         convention, fitting, now = found
-        return [*told, f"Outlines and masks overlap by {now:.0%}; they would by {fitting:.0%} if {convention}."]
-    told += _far(capture, posed)
+        return [*problems, f"Outlines and masks overlap by {now:.0%}; they would by {fitting:.0%} if {convention}."]
+    problems += _far(capture, posed)
     unseen = _unseen(views)
-    told += [f"Camera {name} sees nobody: the posed template is outside its image." for name in unseen]
+    problems += [f"Camera {name} sees nobody: the posed template is outside its image." for name in unseen]
     filled = [view for view in filled if view.camera.name not in unseen]
     if shifted := list(_shifted(capture, posed, filled)):
-        return told + shifted
+        return problems + shifted
     apart = [*cameras_apart(posed, filled), *missing_lens(posed, filled)]
     if not apart and filled and mean_overlap(filled) < POOR:
         apart = [
             f"Outlines and masks overlap by {mean_overlap(filled):.0%}, and no other axes, units or frames that were "
             "tried fit better: look at the image."
         ]
-    return told + apart
+    return problems + apart
 
 
 def remarks(views: Sequence[Seen], *, fits: bool) -> list[str]:
-    """What is possible but worth a look: masks without the person and, where all else `fits`, low overlaps."""
+    """Remarks on what is worth a look: masks without the person and, where all else `fits`, low overlaps."""
     filled = [view for view in views if view.mask.any()]
-    told, mean = list(_sometimes_empty(views)), mean_overlap(filled)
+    found, mean = list(_sometimes_empty(views)), mean_overlap(filled)
     if not fits or not filled:
-        return told
-    told += cameras_below(filled)
+        return found
+    found += cameras_below(filled)
     if mean >= GOOD:
-        return told
+        return found
     return [
-        *told,
+        *found,
         f"Outlines and masks overlap by {mean:.0%} on average; {GOOD:.0%} or more is usual, also with loose clothes. "
         "Compare template, poses and masks in the image that -o writes.",
     ]
@@ -114,7 +114,7 @@ def _inverted(views: Sequence[Seen]) -> dict[str, float]:
     return {n: inverse[n] for n, of in by_camera(views).items() if inverse[n] > max(POOR, mean_overlap(of) + GAIN)}
 
 
-def _inverted_told(inverted: Mapping[str, float], views: Sequence[Seen]) -> Iterator[str]:
+def _inverted_masks(inverted: Mapping[str, float], views: Sequence[Seen]) -> Iterator[str]:
     every = len(inverted) > 1 and len(inverted) == len(by_camera(views))
     named = (
         {"All cameras": float(np.mean([*inverted.values()]))}
@@ -154,7 +154,7 @@ def _shifted(capture: Capture, posed: Posed, views: Sequence[Seen]) -> Iterator[
 
 
 def _best_shift(capture: Capture, posed: Posed, views: Sequence[Seen]) -> tuple[int, float]:
-    """By how many frames later poses fit some views of one clip best, and their overlap then."""
+    """The shift in frames at which later poses fit some views of one clip best, and their overlap then."""
     clip, motion = capture.clip(views[0].clip), capture.whole_motion(views[0].clip)
     last = len(motion) - clip.first - clip.frames
     shifts = range(max(-FARTHEST_SHIFT, -clip.first), min(FARTHEST_SHIFT, last) + 1)

@@ -46,7 +46,7 @@ class Posed:
         return cls(surfaces, {clip.name: posed_template(surfaces, capture.motion(clip.name)) for clip in clips})
 
     def covers(self, clip: str, frame: int, camera: CaptureCamera) -> Array:
-        """What the template covers of an image, [h, w] bool."""
+        """Whether the template covers each pixel of an image, [h, w] bool."""
         return silhouette(self.vertices[clip][frame], self.surfaces.faces, camera)
 
 

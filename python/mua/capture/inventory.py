@@ -14,11 +14,13 @@ def missing_files(capture: Capture) -> Iterator[str]:
         for field, what in (("images", "images"), ("masks", "masks"), ("backgrounds", "backgrounds")):
             pattern = getattr(capture, field)
             if pattern is not None:
-                yield from (f"Camera {camera.name}: {told}." for told in _missing(capture, pattern, camera.name, what))
+                yield from (
+                    f"Camera {camera.name}: {problem}." for problem in _missing(capture, pattern, camera.name, what)
+                )
 
 
 def _missing(capture: Capture, pattern: str, camera: str, what: str) -> Iterator[str]:
-    """What of one camera is missing."""
+    """Sentences on the files that one camera lacks."""
     wanted = {
         capture.place(pattern, clip=clip.name, camera=camera, frame=frame): (clip, frame)
         for clip in capture.clips

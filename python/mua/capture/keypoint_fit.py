@@ -33,7 +33,7 @@ class Fitted:
     limbs: float  # how many times as long as the template's the person's are, all together
 
     def spread(self) -> list[tuple[float, float]]:
-        """Of every keypoint the median and the largest distance, metres."""
+        """The median and the largest distance of every keypoint, metres."""
         seen = (distances[np.isfinite(distances)] for distances in self.distances.T)
         return [(float(np.median(one)), float(one.max())) for one in seen]
 

@@ -1,4 +1,4 @@
-"""Which points of a template 3D keypoints are of, by their names, and how long the person's limbs are."""
+"""Points of a template that 3D keypoints show, by the keypoints' names, and the lengths of the person's limbs."""
 
 import re
 from collections.abc import Sequence
@@ -86,7 +86,7 @@ def limb_scales(
     targets: Sequence[Target],
     points: Array,  # [F, K, 3]
 ) -> tuple[Array, float]:
-    """By how much the way [J] from each joint's parent to it is longer than the template's, and all limbs together."""
+    """Scales [J] of the way from each joint's parent to it over the template's, and the scale of all limbs together."""
     at = {target.role: number for number, target in enumerate(targets) if not target.offset.any()}
     _, bind = skeleton.world(skeleton.bind_rotations, skeleton.bind_translations)
     scales, ours, theirs = np.ones(len(skeleton.names)), 0.0, 0.0

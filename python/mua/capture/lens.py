@@ -13,7 +13,7 @@ def distorted(
     y: Array,  # [...]
     coefficients: tuple[float, ...],  # k1, k2, p1, p2, k3
 ) -> tuple[Array, Array]:
-    """Where the lens shows them, [...] each (https://docs.opencv.org/4.x/d9/d0c/group__calib3d.html)."""
+    """The places [...] at which the lens shows them (https://docs.opencv.org/4.x/d9/d0c/group__calib3d.html)."""
     k1, k2, p1, p2, k3 = coefficients
     square = x * x + y * y
     radial = 1 + square * (k1 + square * (k2 + square * k3))
@@ -28,7 +28,7 @@ def undistorted(
     y: Array,  # [...]
     coefficients: tuple[float, ...],
 ) -> tuple[Array, Array]:
-    """Where a pinhole would show them, [...] each: what `distorted` leaves is taken back until it is nothing."""
+    """The places [...] at which a pinhole would show them, by fixed-point iteration of `distorted`."""
     if tuple(coefficients) == UNDISTORTED:
         return x, y
     straight = x, y

@@ -37,7 +37,7 @@ def silhouette(vertices: Array, faces: Array, camera: CaptureCamera) -> Array:
 
 
 def fine_silhouette(vertices: Array, faces: Array, camera: CaptureCamera) -> Array:
-    """The same of every part of a pixel, [FINER H, FINER W] bool."""
+    """Whether the surface covers the middle of every part of a pixel, [FINER H, FINER W] bool."""
     places, depth = pixels(camera, vertices)
     width, height = camera.size
     corners = places[faces[(depth[faces] > NEAR).all(axis=1)]]

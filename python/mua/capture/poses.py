@@ -33,7 +33,7 @@ def template_poses(
 
 
 def cut_poses(clip: Clip, motion: Path, *, first: int, frames: int, steps: int) -> Clip:
-    """From frame `first` to the last of `frames`, each `steps` poses apart; raises InputError for too few poses."""
+    """The poses of `frames` frames from `first` on, `steps` poses apart; raises InputError for too few poses."""
     there = -(-len(clip) // steps)
     if there < first + frames:
         wanted = f"clip {clip.name!r} needs {frames} from pose {first} on"

@@ -41,21 +41,23 @@ def open_capture(folder: PathLike) -> Capture:
     """
     require_capture(path := as_path(folder, "capture"))
     file = path / CAPTURE
-    said = _object(_parsed(file), str(file), NEEDED, OPTIONAL)
-    if said["format"] != FORMAT or said["version"] != VERSION:
-        found = f"{describe(said['format'])}, version {describe(said['version'])}"
+    fields = _object(_parsed(file), str(file), NEEDED, OPTIONAL)
+    if fields["format"] != FORMAT or fields["version"] != VERSION:
+        found = f"{describe(fields['format'])}, version {describe(fields['version'])}"
         raise InputError(f"{file}: format is {found}; this program reads {FORMAT!r}, version {VERSION}")
     capture = Capture(
         folder=file.parent,
-        name=_name(said["name"], f"{file}: name"),
-        rate=_number(said["rate"], f"{file}: rate", LEAST_RATE, LARGEST_RATE, "frames per second"),
-        template=file.parent / _text(said["template"], f"{file}: template"),
-        template_height=_height(said.get("template_height"), f"{file}: template_height"),
-        leave_out=_texts(said.get("leave_out", []), f"{file}: leave_out"),
-        clips=tuple(_clip(clip, f"{file}: clips[{i}]", file) for i, clip in enumerate(_list(said, "clips", file))),
-        cameras=tuple(_camera(one, f"{file}: cameras[{i}]") for i, one in enumerate(_list(said, "cameras", file))),
-        images=_text(said["images"], f"{file}: images"),
-        **{field: _text(said[field], f"{file}: {field}") for field in PLACES if field != "images" and field in said},
+        name=_name(fields["name"], f"{file}: name"),
+        rate=_number(fields["rate"], f"{file}: rate", LEAST_RATE, LARGEST_RATE, "frames per second"),
+        template=file.parent / _text(fields["template"], f"{file}: template"),
+        template_height=_height(fields.get("template_height"), f"{file}: template_height"),
+        leave_out=_texts(fields.get("leave_out", []), f"{file}: leave_out"),
+        clips=tuple(_clip(clip, f"{file}: clips[{i}]", file) for i, clip in enumerate(_list(fields, "clips", file))),
+        cameras=tuple(_camera(one, f"{file}: cameras[{i}]") for i, one in enumerate(_list(fields, "cameras", file))),
+        images=_text(fields["images"], f"{file}: images"),
+        **{
+            field: _text(fields[field], f"{file}: {field}") for field in PLACES if field != "images" and field in fields
+        },
     )
     _check_whole(capture)
     return capture
@@ -69,7 +71,7 @@ def _parsed(file: Path) -> Any:
 
 
 def _check_whole(capture: Capture) -> None:
-    """What only all fields together show."""
+    """Checks of fields against each other."""
     for field, listed in (("cameras", capture.cameras), ("clips", capture.clips)):
         names = [one.name for one in listed]
         twice = next((name for name in names if names.count(name) > 1), None)
@@ -110,38 +112,38 @@ def _check_pattern(pattern: str, where: str, places: Sequence[str], counts: dict
 
 
 def _clip(value: Any, where: str, file: Path) -> CaptureClip:
-    said = _object(value, where, ("name", "motion", "frames"), ("first", "first_image", "held_out"))
-    name = _name(said["name"], f"{where}: name")
+    fields = _object(value, where, ("name", "motion", "frames"), ("first", "first_image", "held_out"))
+    name = _name(fields["name"], f"{where}: name")
     where = f"{where} ({name})"
     return CaptureClip(
         name=name,
-        motion=file.parent / _text(said["motion"], f"{where}: motion"),
-        first=_count(said.get("first", 0), f"{where}: first", 0),
-        frames=_count(said["frames"], f"{where}: frames", 1),
-        held_out=_flag(said.get("held_out", False), f"{where}: held_out"),
-        first_image=_count(said.get("first_image", 0), f"{where}: first_image", 0),
+        motion=file.parent / _text(fields["motion"], f"{where}: motion"),
+        first=_count(fields.get("first", 0), f"{where}: first", 0),
+        frames=_count(fields["frames"], f"{where}: frames", 1),
+        held_out=_flag(fields.get("held_out", False), f"{where}: held_out"),
+        first_image=_count(fields.get("first_image", 0), f"{where}: first_image", 0),
     )
 
 
 def _camera(value: Any, where: str) -> CaptureCamera:
-    said = _object(value, where, ("name", "size", "focal", "centre", "world_to_camera"), ("distortion", "held_out"))
-    name = _name(said["name"], f"{where}: name")
+    fields = _object(value, where, ("name", "size", "focal", "centre", "world_to_camera"), ("distortion", "held_out"))
+    name = _name(fields["name"], f"{where}: name")
     where = f"{where} ({name})"
-    size = finite_array(said["size"], f"{where}: size", (2,))
+    size = finite_array(fields["size"], f"{where}: size", (2,))
     if (size != np.rint(size)).any() or (size < 1).any() or (size > LARGEST_SIDE).any():
-        raise InputError(f"{where}: size is {said['size']}; expected width and height, 1 to {LARGEST_SIDE} pixels")
-    focal = finite_array(said["focal"], f"{where}: focal", (2,))
+        raise InputError(f"{where}: size is {fields['size']}; expected width and height, 1 to {LARGEST_SIDE} pixels")
+    focal = finite_array(fields["focal"], f"{where}: focal", (2,))
     if (focal <= 0).any():
-        raise InputError(f"{where}: focal is {said['focal']}; expected two lengths above 0, in pixels")
-    column, row = finite_array(said["centre"], f"{where}: centre", (2,))
+        raise InputError(f"{where}: focal is {fields['focal']}; expected two lengths above 0, in pixels")
+    column, row = finite_array(fields["centre"], f"{where}: centre", (2,))
     return CaptureCamera(
         name=name,
         size=(int(size[0]), int(size[1])),
         focal=(float(focal[0]), float(focal[1])),
         centre=(float(column), float(row)),
-        world_to_camera=_rigid(said["world_to_camera"], f"{where}: world_to_camera"),
-        distortion=_distortion(said.get("distortion", UNDISTORTED), f"{where}: distortion"),
-        held_out=_flag(said.get("held_out", False), f"{where}: held_out"),
+        world_to_camera=_rigid(fields["world_to_camera"], f"{where}: world_to_camera"),
+        distortion=_distortion(fields.get("distortion", UNDISTORTED), f"{where}: distortion"),
+        held_out=_flag(fields.get("held_out", False), f"{where}: held_out"),
     )
 
 
@@ -181,8 +183,8 @@ def _object(value: Any, where: str, needed: Sequence[str], optional: Sequence[st
     return value
 
 
-def _list(said: dict[str, Any], field: str, file: Path) -> list[Any]:
-    value = said[field]
+def _list(fields: dict[str, Any], field: str, file: Path) -> list[Any]:
+    value = fields[field]
     if not isinstance(value, list) or not value:
         raise InputError(f"{file}: {field} is {describe(value)}; expected a list of at least one")
     return value

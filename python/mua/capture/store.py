@@ -17,7 +17,7 @@ from mua.capture.camera import UNDISTORTED, CaptureCamera
 from mua.capture.capture import Capture
 from mua.capture.pictures import as_mask, read_mask, read_picture, require_size
 from mua.capture.video import VIDEOS, MissingImage, video_frames
-from mua.capture.view import MARGIN, Box, Filmed, View, in_steps, look, nobody, smaller, view_of
+from mua.capture.view import MARGIN, Box, RawFrame, View, in_steps, look, nobody, smaller, view_of
 from mua.files.write import replacing
 
 LIMIT = 50_000_000_000  # bytes that a store may hold; beyond it, views are read anew each time
@@ -41,20 +41,20 @@ class ViewStore:
 
     def view(self, clip: str, frame: int, camera: str) -> View:
         """A view; where one frame of a video is missing, the clip's frames are decoded and stored from there on."""
-        filmed = self._capture.camera(camera)
-        place, rows = self._place(clip, frame, filmed), self._height(filmed)
+        calibrated = self._capture.camera(camera)
+        place, rows = self._place(clip, frame, calibrated), self._height(calibrated)
         if (clip, frame, camera) in self._missing:
-            return nobody(filmed, rows=rows)
-        if not place.is_file() and self._room > 0 and self._is_video(clip, filmed):
+            return nobody(calibrated, rows=rows)
+        if not place.is_file() and self._room > 0 and self._is_video(clip, calibrated):
             with suppress(MissingImage):  # of this frame or of a later one
-                self._store_rest(clip, frame, filmed)
+                self._store_rest(clip, frame, calibrated)
         if place.is_file():
-            return self._read(place, filmed)
+            return self._read(place, calibrated)
         try:
             view = self._capture.view(clip, frame, camera, crop=self._crop, rows=rows)
         except MissingImage:
             self._missing.add((clip, frame, camera))
-            return nobody(filmed, rows=rows)
+            return nobody(calibrated, rows=rows)
         self._write(place, view)
         return view
 
@@ -66,7 +66,7 @@ class ViewStore:
                 return
             self._write(place, view_of(taken, camera, crop=self._crop, rows=self._height(camera)))
 
-    def _taken(self, clip: str, first: int, camera: CaptureCamera) -> Iterator[Filmed]:
+    def _taken(self, clip: str, first: int, camera: CaptureCamera) -> Iterator[RawFrame]:
         """Frames of a video with their masks, from one on."""
         files = self._capture.files(clip, first, camera.name)
         with ExitStack() as stack:
@@ -81,7 +81,7 @@ class ViewStore:
                 if place is None or (masks is not None and mask is None):
                     return
                 cover = read_mask(place, number=0, size=camera.size) if mask is None else as_mask(mask)
-                yield Filmed(image, cover, clear=False)
+                yield RawFrame(image, cover, clear=False)
 
     def _height(self, camera: CaptureCamera) -> int | None:
         """Rows of a camera's whole image."""
@@ -92,7 +92,7 @@ class ViewStore:
         return image.suffix.lower() in VIDEOS and image.is_file()
 
     def _place(self, clip: str, frame: int, camera: CaptureCamera) -> Path:
-        """Where a view is stored; the name tells all that it was made from."""
+        """Where a view is stored; its name changes with everything that the view is made from."""
         files = self._capture.files(clip, frame, camera.name)
         states = [path.stat() for path in (files.image, files.mask) if path is not None and path.is_file()]
         made_from = (
@@ -105,11 +105,11 @@ class ViewStore:
     def _write(self, place: Path, view: View) -> None:
         if self._room <= 0:
             return
-        told = PngInfo()
-        told.add_text("box", " ".join(map(str, self._box(view))))
+        metadata = PngInfo()
+        metadata.add_text("box", " ".join(map(str, self._box(view))))
         picture = Image.fromarray(to_bytes(np.dstack([view.image, view.mask])))
         with replacing(place) as temporary:
-            picture.save(temporary, pnginfo=told, compress_level=QUICK)
+            picture.save(temporary, pnginfo=metadata, compress_level=QUICK)
         self._room -= place.stat().st_size
 
     def _box(self, view: View) -> Box:

@@ -27,7 +27,7 @@ class MaskTrust:
         self._skinning = Skinning(surfaces.skin_indices[some], surfaces.skin_weights[some])
         motions = {clip.name: capture.motion(clip.name) for clip in capture.clips}
         self._joints = {n: surfaces.skeleton.skinning(m.rotations, m.translations) for n, m in motions.items()}
-        found = [*_some(capture, self._overlap)]
+        found = [*_sample_overlaps(capture, self._overlap)]
         self.usual = float(np.median([one for one in found if one] or [0]))  # empty masks say nothing
         if not any(found):
             clip = next(clip for clip in capture.clips if not clip.held_out)
@@ -51,8 +51,8 @@ class MaskTrust:
         return rough_overlap(points, view.pinhole, view.mask >= COVERED)
 
 
-def _some(capture: Capture, overlap: Callable[[str, int, View], float]) -> Iterator[float]:
-    """Overlaps of a few views that are trained on; those that cannot be read are told where they are needed."""
+def _sample_overlaps(capture: Capture, overlap: Callable[[str, int, View], float]) -> Iterator[float]:
+    """Overlaps of a few training views; those that cannot be read are left out, and reported where they are needed."""
     cameras = [camera for camera in capture.cameras if not camera.held_out]
     for clip in (clip for clip in capture.clips if not clip.held_out):
         for frame in chosen_frames(capture, clip, None):

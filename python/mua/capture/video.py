@@ -57,8 +57,8 @@ def video_rate(path: Path) -> float:
     """Frames a second; raises InputError where ffmpeg finds no video."""
     from imageio_ffmpeg import get_ffmpeg_exe
 
-    said = run([get_ffmpeg_exe(), "-hide_banner", "-i", str(path)], stdin=DEVNULL, capture_output=True, check=False)
-    found = re.search(rb"Video: .* ([0-9.]+) fps", said.stderr)
+    probed = run([get_ffmpeg_exe(), "-hide_banner", "-i", str(path)], stdin=DEVNULL, capture_output=True, check=False)
+    found = re.search(rb"Video: .* ([0-9.]+) fps", probed.stderr)
     if found is None or float(found[1]) <= 0:
         raise InputError(f"{path}: ffmpeg cannot read it as a video of a steady rate")
     return float(found[1])

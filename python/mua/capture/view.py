@@ -1,4 +1,4 @@
-"""What one camera saw of one frame: read, undistorted, cut to the person, made smaller."""
+"""The view of one frame by one camera: read, undistorted, cut to the person, made smaller."""
 
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -21,7 +21,7 @@ Box = tuple[int, int, int, int]  # left, upper, right, lower edge in pixels
 
 @dataclass(frozen=True)
 class Files:
-    """Where a view's images lie; `number` is its frame where they are videos."""
+    """The files of a view's images; `number` is its frame where they are videos."""
 
     image: Path
     mask: Path | None  # None: the alpha of the image
@@ -50,8 +50,8 @@ class View:
 
 
 @dataclass(frozen=True, eq=False)
-class Filmed:
-    """What a camera took of one frame, with its distortion."""
+class RawFrame:
+    """One frame as its camera took it, with distortion."""
 
     image: Array  # [H, W, 3] uint8 sRGB
     mask: Array  # [H, W, 1] uint8
@@ -64,18 +64,18 @@ def read_view(files: Files, camera: CaptureCamera, *, crop: bool = False, rows: 
     if files.background is not None:
         require_file(files.background)
         background = read_picture(files.background, number=0, size=camera.size)[..., :3]
-    return view_of(filmed(files, camera), camera, crop=crop, rows=rows, background=background)
+    return view_of(read_frame(files, camera), camera, crop=crop, rows=rows, background=background)
 
 
-def filmed(files: Files, camera: CaptureCamera) -> Filmed:
+def read_frame(files: Files, camera: CaptureCamera) -> RawFrame:
     """Read image and mask; raises InputError where there is none."""
     image = read_picture(files.image, number=files.number, size=camera.size)
     if files.mask is not None:
         mask = read_mask(files.mask, number=files.number, size=camera.size)
-        return Filmed(image[..., :3], mask, clear=False)
+        return RawFrame(image[..., :3], mask, clear=False)
     if image.shape[2] < 4:
         raise InputError(f"{files.image}: has no alpha; expected it to have one, or capture.json to name masks")
-    return Filmed(image[..., :3], image[..., 3:], clear=True)
+    return RawFrame(image[..., :3], image[..., 3:], clear=True)
 
 
 def nobody(camera: CaptureCamera, *, rows: int | None = None) -> View:
@@ -86,7 +86,7 @@ def nobody(camera: CaptureCamera, *, rows: int | None = None) -> View:
 
 
 def view_of(
-    taken: Filmed,
+    taken: RawFrame,
     camera: CaptureCamera,
     *,
     crop: bool,
@@ -115,12 +115,12 @@ def smaller(camera: CaptureCamera, rows: int | None) -> CaptureCamera:
 
 
 def look(
-    picture: Array,  # [H, W, C] 0..255, as filmed
+    picture: Array,  # [H, W, C] 0..255, with distortion
     camera: CaptureCamera,
     small: CaptureCamera,  # the same for a smaller image
     box: Box,  # of the smaller image
 ) -> Array:
-    """What a pinhole would have seen in a box, [h, w, C] float32 in 0..1."""
+    """The image that a pinhole would have seen in a box, [h, w, C] float32 in 0..1."""
     (left, upper, right, lower), scale = box, np.array(camera.size) / small.size
     columns, rows = np.arange(left, right + 1) * scale[0], np.arange(upper, lower + 1) * scale[1]
     reach = (int(columns[0]), int(rows[0]), int(np.ceil(columns[-1])), int(np.ceil(rows[-1])))

@@ -1,4 +1,4 @@
-"""From the pieces that a scene file holds to one surface on one rigid skeleton; shared by all readers."""
+"""Merges the pieces of a scene file to one surface on one rigid skeleton; shared by all readers."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -93,7 +93,7 @@ def assemble(scene: Scene, path: Path, *, leave_out: Sequence[str] = ()) -> Surf
 
 
 def _without_outlines(scene: Scene, bind: Bind, mesh: _Mesh) -> tuple[Scene, Bind, _Mesh]:
-    """The same without parts of one colour that are shells of the others, wound inside out: splats would cover them."""
+    """The scene without outlines: one-coloured shells around other parts, wound inside out, that splats would draw."""
     sizes = [len(part.faces) for part in scene.parts]
     plain = [
         p
@@ -233,7 +233,7 @@ def _weld(mesh: _Mesh) -> _Mesh:
     faces = faces.reshape(-1, 3)
     uv, uv_faces = _corners(faces, mesh.uv, uv_faces=uv_faces, face_material=face_material)
     rows = first[used]
-    told = (f"{doubled} duplicate triangles are dropped.",) if doubled else ()
+    notes = (f"{doubled} duplicate triangles are dropped.",) if doubled else ()
     return replace(
         mesh,
         groups=mesh.groups[rows],
@@ -245,7 +245,7 @@ def _weld(mesh: _Mesh) -> _Mesh:
         uv_faces=uv_faces,
         face_material=face_material,
         colors=mesh.colors[kept],
-        notes=(*mesh.notes, *told),
+        notes=(*mesh.notes, *notes),
     )
 
 
@@ -257,8 +257,8 @@ def _outward(mesh: _Mesh) -> _Mesh:
     faces, uv_faces, colors = mesh.faces.copy(), mesh.uv_faces.copy(), mesh.colors.copy()
     for corners in (faces, uv_faces, colors):
         corners[turned] = corners[turned][:, ::-1]
-    told = f"{np.count_nonzero(turned):,} triangles of closed pieces are wound inside out and are turned."
-    return replace(mesh, faces=faces, uv_faces=uv_faces, colors=colors, notes=(*mesh.notes, told))
+    note = f"{np.count_nonzero(turned):,} triangles of closed pieces are wound inside out and are turned."
+    return replace(mesh, faces=faces, uv_faces=uv_faces, colors=colors, notes=(*mesh.notes, note))
 
 
 def first_of_equal(rows: Array) -> tuple[Array, Array]:

@@ -175,7 +175,7 @@ def _rest_space(
     *,
     mass: Array,  # [n]
 ) -> Array | None:
-    """The same matrix [4, 4] where the mesh is bound in the rest pose, as more than half of its weight agrees."""
+    """The mesh's space [4, 4] where it is bound in the rest pose: more than half of its weight agrees on one matrix."""
     spaces, used = _spaces(scene, skin, mass)
     mass = mass[used]
     scale = np.abs(np.linalg.det(spaces[:, :3, :3])) ** (1 / 3)
@@ -192,7 +192,7 @@ def _moved_with(scene: Scene, skin: Skin, mass: Array, bound: dict[int, Array], 
 
 
 def _spaces(scene: Scene, skin: Skin, mass: Array) -> tuple[Array, Array]:
-    """Where each joint with weights would put the mesh at rest [n, 4, 4], and which [n] of the skin's joints it is."""
+    """The spaces [n, 4, 4] in which joints with weights put the mesh at rest, and these [n] among the skin's joints."""
     used = np.flatnonzero(mass)
     return scene.rest[skin.joints[used]] @ skin.inverse_binds[used], used
 
@@ -206,7 +206,7 @@ def _upright_space(
 ) -> Array:
     """The mesh's space where rest and bind pose differ: the skeleton's own frame, turned by quarter turns only.
 
-    Modelling tools bind in the skeleton's frame up to a change of axes and units; the joints' mean tells which.
+    Modelling tools bind in the skeleton's frame up to a change of axes and units; the joints' mean shows which.
     """
     spaces, used = _spaces(scene, skin, mass)
     scale = np.abs(np.linalg.det(spaces[:, :3, :3])) ** (1 / 3)

@@ -17,7 +17,7 @@ UNITS = (0.01, 0.001, 100.0)  # centimetres or millimetres taken for metres, met
 ADULT = 1.75  # metres: what a figure is made whose file says nothing that is possible
 FLAT = 1e-3  # of the length: what is lower than this has no height to judge
 LYING = 0.2  # of its length: what a creature that creeps counts as high
-SIDES = (  # how names say left, and what stands there for right
+SIDES = (  # patterns of left in names, and what replaces them for right
     ("left", "right"),
     ("Left", "Right"),
     ("LEFT", "RIGHT"),
@@ -32,11 +32,11 @@ FACING = 0.5  # cosine between a character's front and +Z below which it is turn
 
 @dataclass(frozen=True)
 class Correction:
-    """What was changed, with a sentence for each change."""
+    """The changes, with a sentence for each."""
 
     unit: float  # metres as which one metre of the file is taken
     size_notes: tuple[str, ...]
-    notes: tuple[str, ...]  # of all else
+    notes: tuple[str, ...]  # all other changes
 
 
 def corrected(
@@ -48,12 +48,12 @@ def corrected(
 ) -> tuple[Scene, Correction]:
     """The scene at a plausible height in metres, upright and facing +Z."""
     correction = np.eye(4)
-    told = []
+    notes = []
     upright = upright_rotation(scene, bind) if stand else None
     if upright is not None:
         correction[:3, :3] = upright
         points, bind = points @ upright.T, replace(bind, places=bind.places @ upright.T)
-        told.append(
+        notes.append(
             "The character lies in its bind pose, because the file states a wrong up axis; it is turned upright."
         )
     unit, size_notes = plausible_unit(_height(points))
@@ -62,10 +62,10 @@ def corrected(
     if turn:
         c, s = np.cos(turn * np.pi / 2).round(), np.sin(turn * np.pi / 2).round()
         correction[:3, :3] = np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]]) @ correction[:3, :3]
-        told.append(
+        notes.append(
             f"The character's left and right joints show that it does not face +Z; it is turned by {turn * 90}°."
         )
-    change = Correction(unit, size_notes, tuple(told))
+    change = Correction(unit, size_notes, tuple(notes))
     if (correction == np.eye(4)).all():
         return scene, change
     return carried(scene, correction), change

@@ -47,10 +47,10 @@ def reattached(names: list[str], bind: Bind, *, motions: list[RigidMotion]) -> t
     moved, left_out = int(np.count_nonzero((parents != bind.parents) & kept)), int(np.count_nonzero(~kept))
     if not moved and not left_out:
         return bind, ()
-    return _ordered(bind, parents, kept), (_told(moved, left_out, shown=bool(motions)),)
+    return _ordered(bind, parents, kept), (_note(moved, left_out, shown=bool(motions)),)
 
 
-def _told(moved: int, left_out: int, *, shown: bool) -> str:
+def _note(moved: int, left_out: int, *, shown: bool) -> str:
     """The sentence on joints that hang elsewhere and those that are left out; `shown`: by clips."""
     parts = []
     if moved:

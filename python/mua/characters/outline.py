@@ -37,7 +37,7 @@ def outlines(
 
 
 def _volume(at: Array, faces: Array) -> float:
-    """What a surface encloses about its middle; below 0 where it faces inward."""
+    """The volume that a surface encloses; below 0 where it faces inward."""
     if not len(faces):
         return 0.0
     a, b, c = np.moveaxis(at[faces] - at[np.unique(faces)].mean(axis=0), 1, 0)

@@ -32,8 +32,8 @@ class Rigged:
 def rigid_skeleton(scene: Scene, bind: Bind) -> Rigged:
     """Make the scene's joints rigid: rotations, and translations wherever a clip moves what the mesh hangs on."""
     motions = [rigid_motion(motion, bind) for motion in scene.motions]
-    bind, told = reattached([scene.node_names[node] for node in bind.nodes], bind, motions=motions)
-    if told:
+    bind, notes = reattached([scene.node_names[node] for node in bind.nodes], bind, motions=motions)
+    if notes:
         motions = [rigid_motion(motion, bind) for motion in scene.motions]
     names = unique_names([scene.node_names[node] for node in bind.nodes])
     bind_world = rotations_of(bind.matrices)
@@ -53,7 +53,7 @@ def rigid_skeleton(scene: Scene, bind: Bind) -> Rigged:
         stretches = _stretches(motion, bind)
         clips.append(Clip(source.name, source.rate, local, translations, stretches=stretches))
     return Rigged(
-        skeleton, bind.nodes, tuple(clips), (*told, *_told_scale(scene, skeleton, bind=bind, motions=motions))
+        skeleton, bind.nodes, tuple(clips), (*notes, *_scale_note(scene, skeleton, bind=bind, motions=motions))
     )
 
 
@@ -101,7 +101,7 @@ def _moved(skeleton: Skeleton, bind: Bind, offsets: list[Array]) -> Array:
     return moved
 
 
-def _told_scale(scene: Scene, skeleton: Skeleton, *, bind: Bind, motions: list[RigidMotion]) -> tuple[str, ...]:
+def _scale_note(scene: Scene, skeleton: Skeleton, *, bind: Bind, motions: list[RigidMotion]) -> tuple[str, ...]:
     """A sentence on the largest scale, which rigid joints do not carry."""
     scales = [(0.0, "", "")]
     for source, motion in zip(scene.motions, motions, strict=True):

@@ -16,7 +16,7 @@ Y = np.array([0.0, 1, 0])
 
 
 def upright_rotation(scene: Scene, bind: Bind) -> Array | None:
-    """The rotation [3, 3] that makes a lying person stand; None where nobody lies, or names do not tell a person."""
+    """The rotation [3, 3] that makes a lying person stand; None where nobody lies, or names do not show a person."""
     found = _roles(scene, bind)
     if _on_four_legs(found, bind.places):
         return None

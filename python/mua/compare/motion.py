@@ -87,7 +87,9 @@ def motion_of(
         canonical = student.mesh(descriptors)
     posed = np.zeros(canonical.shape, np.float32)
     for row, frame in enumerate(frames):
-        posed[row] = pose_about_root(rig, canonical[row].numpy(), clip, int(frame), heading=student.encoding.heading)
+        posed[row] = pose_about_root(
+            rig, canonical[row].numpy(), clip, int(frame), remove_heading=student.encoding.remove_heading
+        )
     return Motion(student.normalize(descriptors), student.read(descriptors), canonical, torch.from_numpy(posed))
 
 
@@ -97,15 +99,15 @@ def pose_about_root(
     clip: Clip,
     frame: int,
     *,
-    heading: bool,
+    remove_heading: bool,
 ) -> Array:
-    """Posed vertices [V, 3] relative to the root joint, turned back by its heading where descriptors are, metres."""
+    """Posed vertices [V, 3] relative to the root joint, its heading removed with `remove_heading`, metres."""
     rotations, translations = clip.rotations[frame], clip.translations[frame]
     joints = rig.skeleton.skinning(rotations, translations)
     posed = rotation.dual_transform(blend_vertices(joints, rig.skin_indices, rig.skin_weights), canonical)
     _, places = rig.skeleton.world(rotations, translations)
     relative = posed - places[rig.skeleton.root]
-    if heading:
+    if remove_heading:
         relative = rotation.rotate(rotation.conjugate(heading_of(joints[rig.skeleton.root, :4])), relative)
     return np.asarray(relative)
 

@@ -107,7 +107,7 @@ def read_amass(path: Path) -> SourceMotion:
 
 
 def _up(roots: Array) -> tuple[str, Array]:
-    """What is up where it is not Z, and the turn [4] to Y up, by the rotations [F, 4] of pelvises."""
+    """The up axis and the turn [4] from it to Y up, by the rotations [F, 4] of pelvises."""
     along = np.median(rotation.rotate(roots, np.array([0.0, 1, 0])), axis=0)[1]
     if along > STANDS:
         return "Y is up", IDENTITY

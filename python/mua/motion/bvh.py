@@ -23,7 +23,7 @@ PERSON_SPAN = (1.7, 3.2)  # metres along the bones from fingertip to toe, child 
 TYPICAL_SPAN = 2.35
 HELD = 1e-4  # of the span: a joint whose place in its parent changes by less keeps the mean
 WHOLE_RATE = 1e-3  # relative: 0.033333 s means 30 frames per second
-MOST = 0.5  # of the frames
+MOST = 0.5  # share of frames with heads above feet along Z, rather than Y, from which on Z is up
 ON_HEAD = 0.9  # of the frames that have heads below feet: more than any handstand is of its clip
 COMMENTS = ("#", "//", ";")  # the format has none, editors and scripts write them nevertheless
 UTF_16 = (b"\xff\xfe", b"\xfe\xff")
@@ -61,8 +61,8 @@ def read_bvh(path: Path, *, scale: float | None = None) -> SourceMotion:
     read = _assemble(path, nodes, rate, values, scale)
     if len(values) == count:
         return read
-    told = f"{path.name}: holds {len(values)} frames, though it says {count}; all are read."
-    return replace(read, notes=(told, *read.notes))
+    note = f"{path.name}: holds {len(values)} frames, though it says {count}; all are read."
+    return replace(read, notes=(note, *read.notes))
 
 
 def _parse_hierarchy(path: Path, lines: list[str]) -> list[_Node]:
@@ -269,7 +269,7 @@ def _likely_unit(span: float) -> float:
 
 
 def _other_up(skeleton: Skeleton, clip: Clip) -> str:
-    """What is up where it is not Y, a key of TO_Y_UP, by how heads (or hips) are above feet; empty where it is Y."""
+    """The up axis as a key of TO_Y_UP, by how heads (or hips) are above feet; empty where it is Y."""
     named = roles(skeleton)
     feet = [*named.get("left foot", ()), *named.get("right foot", ())]
     if not feet:

@@ -48,5 +48,5 @@ def floor_of(at: Array) -> float:
 
 
 def standing(heights: Array) -> float:
-    """What counts as standing of heights [F, P] of feet: the lower one's in the lowest frames."""
+    """The height of standing feet, of heights [F, P]: the lower foot's in the lowest frames."""
     return float(np.quantile(heights.min(axis=1), STANDING))

@@ -1,4 +1,4 @@
-"""Where a body is: the path of its hips, as long as its legs ask for, and feet on the floor."""
+"""A body's place: the path of its hips, scaled to its legs, with feet on the floor."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""What joints are by their places, where names say nothing: legs reach the floor, arms do not, both in pairs alike.
+"""Roles of joints by their places, where names say nothing: legs reach the floor, arms do not, both in pairs alike.
 
 Answered only where a pose is that of a body that stands upright on one pair of legs: a wrong guess would be worse than
 the question.
@@ -43,26 +43,26 @@ def roles_by_place(
     skeleton: Skeleton,
     poses: Array | None = None,  # [P, J, 3] places of the joints in frames of a motion
 ) -> dict[str, str]:
-    """Joint name to role (mua.pose.joint_names.ROLES); empty where the places do not tell."""
+    """Joint name to role (mua.pose.joint_names.ROLES); empty where the places do not show them."""
     if len(set(skeleton.names)) < len(skeleton.names):
         return {}
     return {skeleton.names[joint]: role for joint, role in sorted(joints_by_place(skeleton, poses).items())}
 
 
 def joints_by_place(skeleton: Skeleton, poses: Array | None = None) -> dict[int, str]:
-    """Joint to role by the bind pose; where that is no person who stands, by what most poses tell."""
+    """Joint to role by the bind pose; where that is no person who stands, by most of the poses."""
     _, bind = skeleton.world(skeleton.bind_rotations, skeleton.bind_translations)
     bends = bind[None] if poses is None else poses
     found = _by_pose(skeleton, bind, bends)
     if found or poses is None:
         return found
-    told = Counter(tuple(sorted(_by_pose(skeleton, at, bends).items())) for at in poses)
-    told.pop((), None)
-    return dict(told.most_common(1)[0][0]) if told else {}
+    votes = Counter(tuple(sorted(_by_pose(skeleton, at, bends).items())) for at in poses)
+    votes.pop((), None)
+    return dict(votes.most_common(1)[0][0]) if votes else {}
 
 
 def _by_pose(skeleton: Skeleton, at: Array, bends: Array) -> dict[int, str]:
-    """By the places [J, 3] in one pose, and where limbs bend in several [P, J, 3]."""
+    """Joint to role by the places [J, 3] in one pose, and by where limbs bend in several [P, J, 3]."""
     height = float(np.ptp(at[:, 1]))
     if height <= 0:
         return {}
@@ -159,7 +159,7 @@ def _ahead(at: Array, legs: list[Parts], height: float) -> Array:
 
 
 def _neck_and_head(skeleton: Skeleton, at: Array, arm: _Limbs, found: dict[int, str]) -> dict[int, str]:
-    """What goes up from where the arms are: the last joint that carries another, or the only one, is the head."""
+    """The joints that go up from the arms: the last one that carries another, or the only one, is the head."""
     branches = [
         int(joint)
         for joint in np.flatnonzero(skeleton.parents == arm.trunk)

@@ -1,6 +1,6 @@
 """Where the parts of a limb begin, by the lengths along its chain of joints: in any pose, whatever they are called.
 
-Collar bones, twist joints and fingers make chains of any number of joints. People's proportions tell them apart.
+Collar bones, twist joints and fingers make chains of any number of joints. People's proportions distinguish them.
 """
 
 from dataclasses import dataclass

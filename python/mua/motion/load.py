@@ -65,13 +65,13 @@ def unique_names(clips: Sequence[Clip]) -> list[Clip]:
 
 
 def counted(notes: Sequence[str], clips: Sequence[Clip]) -> tuple[str, ...]:
-    """Every sentence once: where several clips bring the same, it says of how many instead of which."""
+    """Every sentence once; where several clips share one, it counts them instead of naming one."""
     names = {clip.name for clip in clips}
-    told: dict[str, list[str]] = {}
+    by_sentence: dict[str, list[str]] = {}
     for note in notes:
         owner, _, sentence = note.partition(": ")
-        told.setdefault(sentence if {owner, Path(owner).stem} & names else note, []).append(note)
-    return tuple(own[0] if len(own) == 1 else f"{len(own)} clips: {sentence}" for sentence, own in told.items())
+        by_sentence.setdefault(sentence if {owner, Path(owner).stem} & names else note, []).append(note)
+    return tuple(own[0] if len(own) == 1 else f"{len(own)} clips: {sentence}" for sentence, own in by_sentence.items())
 
 
 def _put_on(

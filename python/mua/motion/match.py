@@ -19,7 +19,7 @@ class Matches:
 
     chains: Mapping[int, tuple[int, int]]  # target joint -> first and last source joint of the chain that moves it
     roles: Roles  # of the target
-    notes: tuple[str, ...] = ()  # what was told by other means than names, a sentence each
+    notes: tuple[str, ...] = ()  # what was recognised by other means than names, a sentence each
     source_roles: Roles = field(default_factory=dict)
 
     def joint(self, role: str) -> int | None:
@@ -43,7 +43,7 @@ def match_joints(
 ) -> Matches:
     """Find the source chain that moves each target joint: by `mapping`, then by role, then by equal names.
 
-    What a file says of its joints' roles goes before what their names tell.
+    Roles that a file states take precedence over the joints' names.
     Chains of different length share their joints in proportion. A thumb without fingers, as optical motion capture has
     it, is one marker that a solver turned wildly: it moves nothing.
     Errors: InputError if `mapping` names an unknown joint.
@@ -71,7 +71,7 @@ def match_joints(
 def _roles(
     skeleton: Skeleton, said: Mapping[str, str] | None, owner: str, poses: Array | None = None
 ) -> tuple[Roles, tuple[str, ...]]:
-    """Joints of every role by what the file says and names tell, by places and lengths where these leave out limbs."""
+    """Joints of every role by the file and by names, and by places and lengths where these leave out limbs."""
     found = find_roles(skeleton, said)
     notes: tuple[str, ...] = ()
     if placed := _placed(skeleton, found, poses):
@@ -95,7 +95,7 @@ def _are(words: tuple[str, ...]) -> str:
 
 
 def _placed(skeleton: Skeleton, found: Roles, poses: Array | None) -> dict[str, str]:
-    """Joint name to role by places, of the limbs that names leave out; of the trunk too where they tell no limb."""
+    """Joint name to role by places, for limbs that names leave out; for the trunk too where they name no limb."""
     known = {limb for limb in LIMBS if limb != "spine" and any(role in found for role in LIMBS[limb])}
     if len(known) == len(LIMBS) - 1:
         return {}

@@ -68,7 +68,7 @@ def posed_calibrations(
 ) -> dict[int, Array]:
     """The rotation [4] from the target's bind world to the space of the moving joint, of every matched target joint.
 
-    Empty where hips and shoulders cannot be told.
+    Empty where hips and shoulders cannot be recognised.
     """
     bind = trunk_of({role: rest.target_at[ends[0]] for role in AROUND if (ends := rest.matches.ends(role)) is not None})
     trunk = trunk_of({role: at[:, ends[1]] for role in AROUND if (ends := rest.matches.ends(role)) is not None})
@@ -89,22 +89,22 @@ def _calibration(frames: _Frames, joint: int, role: str, found: dict[int, Array]
     side, _, part = role.rpartition(" ")
     turn = None
     if role in ("hips", "spine"):
-        turn = _of_trunk(frames, joint, role)
+        turn = _trunk_calibration(frames, joint, role)
     elif part in UPPER:
-        turn = _of_upper(frames, joint, side, part, found)
+        turn = _upper_calibration(frames, joint, side, part, found)
     elif part in LOWER:
-        turn = _of_lower(frames, joint, side, part, found)
+        turn = _lower_calibration(frames, joint, side, part, found)
     elif part == "foot":
-        turn = _of_foot(frames, joint, side, found)
+        turn = _foot_calibration(frames, joint, side, found)
     elif role == "head":
-        turn = _of_head(frames, joint, found)
+        turn = _head_calibration(frames, joint, found)
     elif part in FINGERS:
-        turn = _of_finger(frames, joint, role, found)
-    return _as_above(frames, joint, found) if turn is None else turn
+        turn = _finger_calibration(frames, joint, role, found)
+    return _calibration_as_above(frames, joint, found) if turn is None else turn
 
 
-def _of_trunk(frames: _Frames, joint: int, role: str) -> Array | None:
-    """By up and left, that of the hips below and that of the shoulders above."""
+def _trunk_calibration(frames: _Frames, joint: int, role: str) -> Array | None:
+    """Calibration of a joint of the trunk by up and by left: that of the hips below, that of the shoulders above."""
     chain = frames.rest.matches.roles[role]
     share = 0.0 if role == "hips" else (chain.index(joint) + 1) / len(chain)
     left = (1 - share) * frames.trunk.hips + share * frames.trunk.chest
@@ -114,8 +114,8 @@ def _of_trunk(frames: _Frames, joint: int, role: str) -> Array | None:
     return _between(bind, frames.bind.up, across, up)
 
 
-def _of_upper(frames: _Frames, joint: int, side: str, part: str, found: dict[int, Array]) -> Array | None:
-    """By the bone and the axis on which elbow or knee bends."""
+def _upper_calibration(frames: _Frames, joint: int, side: str, part: str, found: dict[int, Array]) -> Array | None:
+    """Calibration of an upper arm or thigh by its bone and by the axis on which elbow or knee bends."""
     bones = frames.bone(f"{side} {part}", f"{side} {UPPER[part]}")
     if bones is None:
         return None
@@ -130,7 +130,8 @@ def _of_upper(frames: _Frames, joint: int, side: str, part: str, found: dict[int
     return _between(bones[0], _carried(at_ease, bones[0], axis), along, across)
 
 
-def _of_lower(frames: _Frames, joint: int, side: str, part: str, found: dict[int, Array]) -> Array | None:
+def _lower_calibration(frames: _Frames, joint: int, side: str, part: str, found: dict[int, Array]) -> Array | None:
+    """Calibration of a forearm or shin, as `_upper_calibration`."""
     upper, end = LOWER[part]
     above, bones = frames.bone(f"{side} {upper}", f"{side} {part}"), frames.bone(f"{side} {part}", f"{side} {end}")
     if above is None or bones is None:
@@ -144,15 +145,15 @@ def _of_lower(frames: _Frames, joint: int, side: str, part: str, found: dict[int
 
 
 def _at_ease(frames: _Frames, side: str, part: str) -> tuple[Array, Array]:
-    """In the bind pose's world: where a limb points that hangs from legs or is held level, and what it bends about."""
+    """Where a limb at ease points in the bind pose's world (legs hang, arms are level), and the axis it bends about."""
     if part == "thigh":
         return -frames.bind.up, frames.bind.hips
     outward = frames.bind.chest if side == "left" else -frames.bind.chest
     return outward, -frames.bind.up if side == "left" else frames.bind.up
 
 
-def _of_foot(frames: _Frames, joint: int, side: str, found: dict[int, Array]) -> Array | None:
-    """By the sole, level while it stands; by the bone to the toe where no sole stands, or stands on something else."""
+def _foot_calibration(frames: _Frames, joint: int, side: str, found: dict[int, Array]) -> Array | None:
+    """Calibration of a foot by its sole, level while it stands; by the bone to the toe where none is on the floor."""
     bones, ends = frames.bone(f"{side} foot", f"{side} toe"), frames.rest.matches.ends(f"{side} toe")
     if bones is None or ends is None:
         return None
@@ -169,9 +170,9 @@ def _of_foot(frames: _Frames, joint: int, side: str, found: dict[int, Array]) ->
     return _between(frames.bind.up, bones[0], up, ahead) if on_floor else by_bone
 
 
-def _of_head(frames: _Frames, joint: int, found: dict[int, Array]) -> Array:
-    """As on average relative to the neck, but upright where a bone shows which way the skull stands."""
-    base = _as_above(frames, joint, found)
+def _head_calibration(frames: _Frames, joint: int, found: dict[int, Array]) -> Array:
+    """Calibration of the head as on average relative to the neck, but upright where a bone shows the skull."""
+    base = _calibration_as_above(frames, joint, found)
     ends = np.flatnonzero(frames.rest.source.parents == frames.rest.matches.chains[joint][1])
     if len(ends) != 1:
         return base
@@ -180,8 +181,8 @@ def _of_head(frames: _Frames, joint: int, found: dict[int, Array]) -> Array:
     return _laid(base, frames.bind.up, top) if stands else base
 
 
-def _of_finger(frames: _Frames, joint: int, role: str, found: dict[int, Array]) -> Array | None:
-    """As the joint above, its bone laid along the source's."""
+def _finger_calibration(frames: _Frames, joint: int, role: str, found: dict[int, Array]) -> Array | None:
+    """Calibration of a finger as of the joint above, with its bone laid along the source's."""
     chain = frames.rest.matches.roles[role]
     after = chain.index(joint) + 1
     if after >= len(chain) or chain[after] not in frames.rest.matches.chains:
@@ -191,11 +192,11 @@ def _of_finger(frames: _Frames, joint: int, role: str, found: dict[int, Array]) 
     source = frames.own(joint, frames.at[:, last] - frames.at[:, first]).mean(axis=0)
     if not (target.any() and source.any()):
         return None
-    return _laid(_as_above(frames, joint, found), unit(target), unit(source))
+    return _laid(_calibration_as_above(frames, joint, found), unit(target), unit(source))
 
 
-def _as_above(frames: _Frames, joint: int, found: dict[int, Array]) -> Array:
-    """As in the bind pose relative to the part above, on average over upright frames."""
+def _calibration_as_above(frames: _Frames, joint: int, found: dict[int, Array]) -> Array:
+    """Calibration as in the bind pose relative to the part above, on average over upright frames."""
     own = rotation.conjugate(frames.moving(joint))
     return _mean(rotation.multiply(own, _world(frames, joint, found))[frames.upright])
 

@@ -29,8 +29,8 @@ FORWARD = 45.0  # degrees between the source's facing and travel up to which it 
 MOVING = 0.5  # legs per second of the hips along the floor from which somebody travels
 TRAVEL_WINDOW = 0.5  # seconds over which the direction of travel is taken: hips sway from step to step
 TRAVELS = 0.5  # seconds of travel that a clip must have to be judged
-SUNK = 0.06  # of the leg below the floor
-LIFTED = 0.25  # of the leg above the floor
+SUNK = 0.06  # leg lengths below the floor from which a sentence says so
+LIFTED = 0.25  # leg lengths above the floor from which a sentence says so
 SLIDES = 0.1  # legs per second by which standing feet may slide more than in the source
 
 

@@ -1,6 +1,6 @@
 """Where hands and feet are on the character and where the motion has them, whichever joints were paired.
 
-Limbs of the pairs that were chosen cannot show that a pair is wrong. Here each skeleton tells by itself where its limbs
+Limbs of the pairs that were chosen cannot show that a pair is wrong. Here each skeleton shows by itself where its limbs
 begin, bend and end: by the names of their parts; where these are unknown, by where fingers fork, where chains end, and
 the lengths of bones.
 """
@@ -112,7 +112,7 @@ def _limbs(figure: Figure) -> dict[str, tuple[int, int, int]]:
 def _joints(
     skeleton: Skeleton, at: Array, bends: Array, chain: tuple[int, ...], usual: Proportions, named: list[int | None]
 ) -> tuple[int, int, int] | None:
-    """The three joints of a limb, of which names may tell some."""
+    """The three joints of a limb, some of them by their names."""
     begin, bend, end = (joint if joint in chain else None for joint in named)
     if end is None:
         end = fork(skeleton.parents, at, chain) if usual is ARM else ankle(at, chain)

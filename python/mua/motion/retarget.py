@@ -30,9 +30,9 @@ from mua.pose.resample import resample
 from mua.pose.skeleton import Skeleton
 
 ALIKE = 30.0  # degrees within which an estimate agrees
-MOST = 0.75  # of the joints asked
+MOST = 0.75  # share of the joints that must agree
 TURNED = 45.0  # degrees between where hips or chest are and where their joint's turn since rest would have them
-TELLING = (
+CHECKED = (
     *("hips", "spine"),
     *(f"{side} {part}" for side in SIDES for part in ("upper_arm", "forearm", "thigh", "shin")),
 )
@@ -60,7 +60,7 @@ def retarget(source: SourceMotion, target: Skeleton, matches: Matches, *, rate: 
 
 
 def _calibrations(rest: Rest, turned: Array, at: Array, rate: float) -> tuple[dict[int, Array], Array, bool]:
-    """C_t by target joint, W [4], and whether they come from the source's rest pose, which then tells heights too."""
+    """C_t by target joint, W [4], and whether they come from the source's rest pose, which then gives heights too."""
     upright = body_turn(rest)
     by_rest = rest_calibrations(rest, upright)
     honest = (stands(rest.source_places()) or _both_on_all_fours(rest)) and not _turned_otherwise(rest, turned, at)
@@ -104,7 +104,7 @@ def _turned_otherwise(rest: Rest, turned: Array, at: Array) -> bool:
 
 def _same_frames(rest: Rest, by_frames: dict[int, Array], by_pose: dict[int, Array]) -> bool:
     """Whether both skeletons have their joints' axes alike, as rigs of one maker do: then rotations can be copied."""
-    joints = [joint for role in TELLING if (joint := rest.joint(role)) is not None]
+    joints = [joint for role in CHECKED if (joint := rest.joint(role)) is not None]
     cosines = np.array([abs(by_frames[joint] @ by_pose[joint]) for joint in joints])
     return bool(np.mean(cosines > np.cos(np.radians(ALIKE) / 2)) > MOST)
 

@@ -16,7 +16,7 @@ class SourceMotion:
 
     skeleton: Skeleton
     clip: Clip
-    notes: tuple[str, ...] = ()  # decisions of the reader worth telling the user, a sentence each
+    notes: tuple[str, ...] = ()  # decisions of the reader that the user should know, a sentence each
     said: Mapping[str, str] = field(default_factory=dict)  # joint to role, where the file itself says it
 
     def places(self, poses: int) -> Array:

@@ -40,7 +40,7 @@ class Trunk:
 
 
 def trunk_of(at: Mapping[str, Array]) -> Trunk | None:
-    """Up and left of a trunk by the places [..., 3] of its roles; None where they do not tell."""
+    """Up and left of a trunk by the places [..., 3] of its roles; None where they do not show it."""
 
     def line(part: str) -> Array | None:
         left, right = (at.get(f"{side} {part}") for side in SIDES)

@@ -1,4 +1,4 @@
-"""Limbs whose names tell only some of their parts, made whole by the lengths along their joints.
+"""Limbs of which names give only some parts, completed by the lengths along their joints.
 
 "arm_joint_1" to "arm_joint_3" are all an arm by their names; a shoulder, an arm and a wrist leave out the elbow.
 """
@@ -60,7 +60,7 @@ def _without_hip(
 def _split(
     skeleton: Skeleton, at: Array, bends: Array, found: Roles, side: str, parts: tuple[str, ...], usual: Proportions
 ) -> dict[str, tuple[int, ...]]:
-    """Joints of all parts of a limb, none for those that it lacks; {} where names tell enough or lengths nothing."""
+    """Joints of all parts of a limb, none for those that it lacks; {} where names are enough or lengths say nothing."""
     upper, lower, end = (f"{side} {part}" for part in _main(parts))
     twisted = end not in found and len(found.get(lower, ())) > 1
     if not (upper in found or lower in found) or (upper in found and lower in found and not twisted):

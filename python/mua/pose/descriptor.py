@@ -135,7 +135,7 @@ def _gather(encoding: PoseEncoding, frames: _Frames, window: Array) -> Array:
     """Descriptors [N, D] of windows [N, k] of frame indices, newest first."""
     moved = frames.position[window] - frames.position[window[:, :1]]
     turn, turns = frames.turn[window], frames.turns[window[:, 0]]
-    if encoding.heading:
+    if encoding.remove_heading:
         back = rotation.conjugate(heading_of(turn[:, :1]))
         moved, turn = rotation.rotate(back, moved), rotation.multiply(back, turn)
         turns = rotation.multiply(back, turns)

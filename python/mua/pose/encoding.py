@@ -24,14 +24,14 @@ class PoseEncoding:
     First, how `joints` are turned in the world in frame f, relative to the bind pose (6D each): light follows it. Then
     per frame of the window, newest first (f, f-1, f-2): the root joint's world position relative to frame f (3), the
     root joint's world rotation relative to its bind rotation (6D), the local rotations of `joints` (6D each) and the
-    local translations of `translated` relative to those of the bind pose (3 each), metres. With `heading`, positions
-    and rotations in the world are turned back by the yaw of frame f.
+    local translations of `translated` relative to those of the bind pose (3 each), metres. With
+    `remove_heading`, positions and rotations in the world are turned back by the yaw of frame f.
     """
 
     joints: tuple[int, ...]  # joints encoded beside the root, ascending, root excluded
     rate: float  # frames per second between the frames of a window
     window: int = 3  # k
-    heading: bool = True
+    remove_heading: bool = True
     translated: tuple[int, ...] = ()  # joints whose translation is encoded, ascending, root excluded
 
     @property

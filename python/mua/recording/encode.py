@@ -43,13 +43,13 @@ class Reference:
     subbands: Dynamic  # float32
 
 
-def dynamic_subbands(
+def filled_subbands(
     texture: Array,  # [N, C] float32 at the valid texels
     fill: Fill,
     *,
     wavelet: str,
 ) -> Dynamic:
-    """Fill the empty texels and transform."""
+    """The subbands that vary with the frame, of a texture whose empty texels are filled."""
     return Dynamic(*(band.numpy() for band in wavelets.dynamic_subbands(fill(torch.from_numpy(texture)), wavelet)))
 
 

@@ -34,7 +34,7 @@ from mua.recording.layout import (
     shard_name,
     whole_name,
 )
-from mua.recording.rig_file import load_rig, rig_hash
+from mua.recording.rig_file import read_rig, rig_hash
 from mua.wavelets import Bands
 
 Rows = Sequence[int] | Array | Tensor  # recorded frames of one kind, counted from 0 in the order of recording
@@ -86,7 +86,7 @@ class Recording:
         self.directory = as_path(directory, "directory")
         self.header = read_header(self.directory)
         self.rate, self.wavelet = self.header.rate, self.header.wavelet
-        self.rig = load_rig(self.directory / RIG)
+        self.rig = read_rig(self.directory / RIG)
         if rig_hash(self.rig) != self.header.rig:
             raise InputError(f"{self.directory / RIG}: is not the rig whose hash {HEADER} holds")
         indices = read_indices(self.directory)

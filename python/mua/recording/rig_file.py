@@ -29,12 +29,12 @@ def rig_hash(rig: Rig) -> str:
     return digest.hexdigest()
 
 
-def save_rig(path: Path, rig: Rig) -> None:
+def write_rig(path: Path, rig: Rig) -> None:
     with replacing(path) as temporary:
         np.savez(temporary, allow_pickle=False, **_arrays(rig))
 
 
-def load_rig(path: Path) -> Rig:
+def read_rig(path: Path) -> Rig:
     """Raises InputError for a file that is missing, damaged or lacks an array."""
     return _rig(read_npz(path, NAMES))
 

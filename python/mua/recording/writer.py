@@ -24,7 +24,7 @@ from mua.recording.encode import (
     Reference,
     align_rotations,
     check_range,
-    dynamic_subbands,
+    filled_subbands,
     load_reference,
     save_reference,
     valid_texture,
@@ -44,7 +44,7 @@ from mua.recording.layout import (
     write_header,
 )
 from mua.recording.plausible import Finding, LikelyMistake, Plausible, rig_findings
-from mua.recording.rig_file import save_rig
+from mua.recording.rig_file import write_rig
 from mua.recording.shard import Shard
 from mua.rig.rig import Rig
 from mua.texture.fill import Fill
@@ -287,7 +287,7 @@ class TeacherWriter:
         difference = align_rotations(values, self._reference.texture)
         difference -= self._reference.texture
         check_range(difference, self._texels.texels, self._texels.size)
-        subbands = dynamic_subbands(difference, self._fill, wavelet=self._header.wavelet)
+        subbands = filled_subbands(difference, self._fill, wavelet=self._header.wavelet)
         if subbands.peak > HALF_MAX:
             raise InputError(f"texture: a subband differs by {subbands.peak:.3g} from the reference frame's")
         return _Encoded(vertices, difference, subbands.half())
@@ -303,7 +303,7 @@ class TeacherWriter:
     def _keep_reference(self, texture: Array) -> Reference:
         check_range(texture, self._texels.texels, self._texels.size)
         texture = texture.copy()  # the caller may fill the same buffer with the next frame
-        reference = Reference(texture, dynamic_subbands(texture, self._fill, wavelet=self._header.wavelet))
+        reference = Reference(texture, filled_subbands(texture, self._fill, wavelet=self._header.wavelet))
         if reference.subbands.peak > HALF_MAX:
             raise InputError(f"texture: a subband is {reference.subbands.peak:.3g}, expected at most {HALF_MAX:.0f}")
         save_reference(self.directory / REFERENCE, reference)
@@ -327,7 +327,7 @@ def _begin(directory: Path, header: Header, rig: Rig) -> None:
     """Write header and rig of a new recording, or compare those of an old one."""
     if not (directory / HEADER).exists():
         (directory / SHARDS).mkdir(parents=True, exist_ok=True)
-        save_rig(directory / RIG, rig)
+        write_rig(directory / RIG, rig)
         write_header(directory, header)
         return
     stored = read_header(directory)

@@ -6,7 +6,7 @@ import torch
 
 from mua.splatting.projection import Eye, TorchSplats, colors_seen
 
-PIXEL_VARIANCE = 1 / 12  # px^2, of a pixel's square; gsplat's own 0.3 would blur more than the player does
+PIXEL_VARIANCE = 1 / 12  # px^2, the variance of a pixel's square; gsplat's own 0.3 would blur more than the player does
 TO_OPENCV = (1.0, -1.0, -1.0)  # its cameras look along +Z, Y down
 
 

@@ -1,4 +1,4 @@
-"""How alike two images are, with gradients: what a training on images descends."""
+"""Similarity of two images, with gradients, as a training loss."""
 
 import torch
 from torch import Tensor

@@ -1,4 +1,4 @@
-"""The learned perceptual distance of two images, to measure and to descend, with weights that the user gives."""
+"""The learned perceptual distance of two images, as a score and as a loss, with weights that the user gives."""
 
 import pickle
 from pathlib import Path
@@ -44,7 +44,7 @@ class Lpips:
         self._net.net.load_state_dict(given)
 
     def to(self, device: torch.device) -> Self:
-        """The same on a device, and with gradients to images alone."""
+        """Moves the networks to a device; gradients reach images alone."""
         self._net.to(device).requires_grad_(False)
         return self
 

@@ -1,6 +1,6 @@
 """Posing in torch: the same blending and activation as mua.kernels.dq_skinning, with gradients.
 
-They reach the mesh, the texture and the joints' dual quaternions; which way round terms are blended is taken as given.
+They reach the mesh, the texture and the joints' dual quaternions; the signs of blended terms are taken as fixed.
 """
 
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ from mua.splatting.projection import TorchSplats
 
 @dataclass(frozen=True, eq=False)
 class TorchRig:
-    """What of a rig poses splats, as tensors in one dtype and on one device."""
+    """The parts of a rig that pose splats, as tensors of one dtype on one device."""
 
     skin_indices: Tensor  # [V, K] int64 joints, largest weight first
     skin_weights: Tensor  # [V, K] rows sum to 1

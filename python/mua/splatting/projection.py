@@ -1,6 +1,6 @@
 """Splats to the screen of one camera in torch: the same ellipses, culling and order as mua.kernels.splat_project.
 
-Gradients reach everything, the camera's matrices as well; which splats are seen and in what order are taken as given.
+Gradients reach everything, the camera's matrices as well; which splats are seen, and their order, are taken as fixed.
 """
 
 from dataclasses import dataclass
@@ -55,7 +55,7 @@ def project(
     eye: Eye,
     bounds: torch.Tensor,  # [2, 3] world box over which depth is keyed
 ) -> Quads:
-    """What the camera sees, front to back."""
+    """The quads that the camera sees, front to back."""
     near = eye.projection.detach()[2, 3] / -2
     shapes, before = _shapes(splats, eye, near)
     with torch.no_grad():

@@ -63,7 +63,7 @@ def join(
 
 
 def _places(screen: tuple[int, int], device: torch.device) -> torch.Tensor:
-    """Of the tiles [T, 5] of one screen."""
+    """Places [T, 5] of the tiles of one screen."""
     width, height = screen
     row, column = torch.meshgrid(torch.arange(0, height, TILE), torch.arange(0, width, TILE), indexing="ij")
     same = torch.tensor([width, height, 0]).expand(row.numel(), 3)

@@ -34,11 +34,11 @@ RANGE_WEIGHT = 0.01  # of a frame of the built-in range of motion: bases are fir
 GPU_SECONDS = 1.0  # between two questions about the GPU
 
 
-class Listener(Protocol):
-    """Hears how far a distillation is."""
+class StageListener(Protocol):
+    """Progress callbacks of a distillation."""
 
     def stage(self, name: str) -> None:
-        """A stage begins, or one that has begun goes on: two may take turns."""
+        """A stage begins, or continues: two may take turns."""
 
     def step(self, done: int, total: int, *, detail: str = "") -> None: ...
 
@@ -49,7 +49,7 @@ def distil(
     *,
     device: torch.device,
     directory: Path,  # of the checkpoints; a run that was killed goes on from them to the same bytes
-    report: Listener,
+    report: StageListener,
     processes: Processes = ALONE,  # that share the work
     only: StageName | None = None,  # run this stage up to its checkpoints; the student is then unfinished
 ) -> Student:
@@ -92,7 +92,7 @@ def prepare(recording: Recording, settings: Settings) -> tuple[Student, Samples]
     encoding = PoseEncoding(
         choose_joints(skeleton, training, used),
         rate=recording.rate,
-        heading=settings.generalisation.heading,
+        remove_heading=settings.generalisation.remove_heading,
         translated=choose_translated(skeleton, training, used),
     )
     descriptors = describe_frames(recording, encoding)
@@ -142,7 +142,7 @@ def _weights(recording: Recording) -> Tensor | None:
 class _Reporter:
     """Tells a listener of the stages and steps of a training, of several side by side too, and how busy the GPU is."""
 
-    def __init__(self, listener: Listener, device: torch.device) -> None:
+    def __init__(self, listener: StageListener, device: torch.device) -> None:
         self._listener, self._device = listener, device
         self._stage, self._one = "", Lock()
         self._use, self._asked = "", -math.inf

@@ -33,7 +33,7 @@ class Generalisation:
     exchanged_noise: float = 1.0  # of these
     outside: float = 0.2  # share of all points that lie outside of training, where the function fades to the mean
     weight_decay: float = 1e-3  # of the MLPs
-    heading: bool = True  # whether the descriptor is turned back by the heading
+    remove_heading: bool = True  # whether descriptors are turned back by the heading
     own: bool = True  # whether frames show motion that will be played; else all say as little as the range of motion
 
 

@@ -23,21 +23,21 @@ SOLID = 254 / 255  # opacity of a texel with nothing clear about it
 
 @dataclass(frozen=True, eq=False)
 class Sharpness:
-    """What an image asks of the surfel of each texel."""
+    """The width and direction that an image asks of each texel's surfel."""
 
     spreads: Array  # [N] standard deviation over the distance of neighbouring texels
     across: Array  # [N, 2] unit, along u and v: across the line on which the texel lies
     longer: Array  # [N] logarithm of the length along the line over that of a round surfel, 0 where there is no line
 
     def at(self, texels: Array) -> "Sharpness":
-        """That of some of the texels."""
+        """The values of some of the texels."""
         return Sharpness(self.spreads[texels], self.across[texels], self.longer[texels])
 
 
 def sharpness(
     picture: Array,  # [FINER S, FINER S, 4] colours and opacities in 0..1, sRGB
 ) -> Sharpness:
-    """What the image asks for, at all S x S texels row by row; surfels that are not solid are all alike and round."""
+    """The surfels that the image asks for, at all S x S texels row by row; all alike and round where it is clear."""
     size = len(picture) // FINER
     colors = by_texel(picture[..., :3])
     apart = [np.roll(colors, (y, x), (0, 1)) - colors for y in (-1, 0, 1) for x in (-1, 0, 1) if (y, x) != (0, 0)]
@@ -66,7 +66,7 @@ def _lines(
 ) -> tuple[Array, Array]:
     """Unit directions [S, S, 2] in which the colours change most, and how much more so than across them [S, S], 0..1.
 
-    Those of the structure tensor (Foerstner and Guelch 1987).
+    By the structure tensor (Foerstner and Guelch 1987).
     """
     smooth = gaussian_filter(colors, (SMOOTHING[0] * FINER, SMOOTHING[0] * FINER, 0), mode="wrap")
     down, right = np.gradient(smooth, axis=(0, 1))

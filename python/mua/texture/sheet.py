@@ -5,7 +5,7 @@ import numpy as np
 from mua.arrays import Array
 from mua.texture.sharpness import SPREAD
 
-LEVELS = 65  # of opacity, between which is interpolated
+LEVELS = 65  # opacities between which is interpolated
 PLACES = 8  # along a texel, at which the surfels around are laid over each other
 AROUND = 3  # texels beyond which a surfel is not felt
 

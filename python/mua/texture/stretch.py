@@ -53,7 +53,7 @@ class SurfelStretch:
 
 
 def _squares(*components: Array) -> Array:
-    """What a symmetric matrix [n, N] (its diagonal, then its upper half) is weighted with in x . M x."""
+    """The weights of a symmetric matrix's entries [n, N] (its diagonal, then its upper half) in x . M x."""
     count = len(components)
     halves = [2 * components[i] * components[j] for i in range(count) for j in range(i + 1, count)]
     return np.stack([x * x for x in components] + halves)

@@ -58,7 +58,7 @@ def read_avatarrex(
     poses = read_smplx(source / POSES)
     turn = rotation.between(poses.up, Y_UP)
     calibration = next(source / name for name in CALIBRATIONS if (source / name).is_file())
-    cameras = tuple(_camera(name, said, calibration, turn) for name, said in _cameras(calibration).items())
+    cameras = tuple(_camera(name, fields, calibration, turn) for name, fields in _cameras(calibration).items())
     names = [camera.name for camera in cameras]
     images, masks = _patterns(source, names)
     skeleton = read_surfaces(template, size=FigureSize(height=height), leave_out=leave_out).skeleton
@@ -97,25 +97,25 @@ def below(source: Path, pattern: str) -> str:
 
 def _cameras(path: Path) -> dict[str, Any]:
     try:
-        said = json.loads(path.read_text(encoding="utf-8"))
+        cameras = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
         raise InputError(f"{path}: cannot be read as JSON: {error}") from error
-    if not isinstance(said, dict) or not said or not all(isinstance(one, dict) for one in said.values()):
+    if not isinstance(cameras, dict) or not cameras or not all(isinstance(one, dict) for one in cameras.values()):
         raise InputError(f"{path}: expected an object with an object for each camera")
-    return said
+    return cameras
 
 
-def _camera(name: str, said: dict[str, Any], path: Path, turn: Array) -> CaptureCamera:
+def _camera(name: str, fields: dict[str, Any], path: Path, turn: Array) -> CaptureCamera:
     where = f"{path}: {name}"
     for key in ("K", "R", "T", "imgSize"):
-        if key not in said:
+        if key not in fields:
             raise InputError(f"{where}: holds no {key}")
-    intrinsic, turned = (_square(said[key], f"{where}: {key}") for key in ("K", "R"))
-    width, height = finite_array(said["imgSize"], f"{where}: imgSize", (2,))
+    intrinsic, turned = (_square(fields[key], f"{where}: {key}") for key in ("K", "R"))
+    width, height = finite_array(fields["imgSize"], f"{where}: imgSize", (2,))
     matrix = np.eye(4)
     matrix[:3, :3] = turned @ rotation.to_matrix(turn).T
-    matrix[:3, 3] = finite_array(np.ravel(said["T"]), f"{where}: T", (3,))
-    coefficients = finite_array(np.ravel(said.get("distCoeff") or UNDISTORTED), f"{where}: distCoeff", (None,))
+    matrix[:3, 3] = finite_array(np.ravel(fields["T"]), f"{where}: T", (3,))
+    coefficients = finite_array(np.ravel(fields.get("distCoeff") or UNDISTORTED), f"{where}: distCoeff", (None,))
     if len(coefficients) not in (4, 5):
         raise InputError(f"{where}: distCoeff has {len(coefficients)} numbers; expected OpenCV's k1, k2, p1, p2, k3")
     return CaptureCamera(
@@ -134,7 +134,7 @@ def _square(value: Any, where: str) -> Array:
 
 
 def _patterns(source: Path, names: Sequence[str]) -> tuple[str, str]:
-    """Of images and masks, both as a camera has them that has any."""
+    """The patterns of images and masks, by the first layout of `FOLDERS` that has both."""
     for folders in FOLDERS:
         found = [numbered_pattern(source, folder, names) for folder in folders]
         if found[0] is not None and found[1] is None:

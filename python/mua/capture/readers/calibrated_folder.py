@@ -37,7 +37,7 @@ class _Filmed:
         return self.folder / self.pattern.format(camera=self.cameras[0], frame=self.numbers()[0])
 
     def numbers(self) -> range:
-        """Of frames, as the first camera has them."""
+        """Numbers of the frames that the first camera has."""
         name = self.cameras[0]
         if self.is_video:
             return range(min(count_frames(self.folder / self.pattern.format(camera=one)) for one in self.cameras))

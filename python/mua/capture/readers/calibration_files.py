@@ -58,19 +58,19 @@ def _skeletool(path: Path, lines: Sequence[str]) -> tuple[CaptureCamera, ...]:
             blocks[-1][1][key] = _numbers(values, VALUES[key], f"{path}, line {number}: {key}")
         elif key:
             raise InputError(f"{path}, line {number}: {key!r} is not read; expected name, {', '.join(VALUES)}")
-    return tuple(_of_block(name, said, f"{path}: camera {name}") for name, said in blocks)
+    return tuple(_skeletool_camera(name, fields, f"{path}: camera {name}") for name, fields in blocks)
 
 
-def _of_block(name: str, said: dict[str, Array], where: str) -> CaptureCamera:
+def _skeletool_camera(name: str, fields: dict[str, Array], where: str) -> CaptureCamera:
     for key in NEEDED:
-        if key not in said:
+        if key not in fields:
             raise InputError(f"{where}: holds no {key}")
-    if said.get("animated", np.zeros(1)).any():
+    if fields.get("animated", np.zeros(1)).any():
         raise InputError(f"{where}: is animated; expected cameras that stand still")
-    if said.get("radial", np.zeros(1)).any():
-        raise InputError(f"{where}: radial is {said['radial'][0]:g}; undistort the images first and set it to 0")
-    intrinsic, extrinsic = said["intrinsic"].reshape(4, 4), said["extrinsic"].reshape(4, 4)
-    width, height = said["size"]
+    if fields.get("radial", np.zeros(1)).any():
+        raise InputError(f"{where}: radial is {fields['radial'][0]:g}; undistort the images first and set it to 0")
+    intrinsic, extrinsic = fields["intrinsic"].reshape(4, 4), fields["extrinsic"].reshape(4, 4)
+    width, height = fields["size"]
     return CaptureCamera(
         name=name,
         size=(int(width), int(height)),

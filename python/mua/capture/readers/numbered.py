@@ -28,7 +28,7 @@ def numbered_pattern(
 
 
 def complete_frames(source: Path, patterns: Sequence[str], cameras: Sequence[str], frames: Sequence[int]) -> list[bool]:
-    """Of which frames all cameras have files of all patterns."""
+    """Whether all cameras have files of all patterns, for each frame."""
     return [
         all(is_there(source, pattern, camera, frame) for camera in cameras for pattern in patterns) for frame in frames
     ]

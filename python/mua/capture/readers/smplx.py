@@ -108,7 +108,7 @@ def on_template(
 
 
 def _world(poses: SmplxPoses, turn: Array) -> Array:
-    """What each of the model's joints does in our world, [F, 55, 4]."""
+    """Rotations [F, 55, 4] in our world of the model's joints since its rest pose."""
     names = [name for name, _, _ in ROWS]
     found = np.empty_like(poses.turns)
     for joint, (_, parent, _) in enumerate(ROWS):

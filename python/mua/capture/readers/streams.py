@@ -30,7 +30,7 @@ TESTS = "test"  # how the name of a folder begins that is held out
 
 @dataclass(frozen=True)
 class _Take:
-    """What all cameras filmed at once."""
+    """One recording by all cameras at once."""
 
     name: str
     folder: Path
@@ -136,14 +136,14 @@ def _pattern(source: Path, takes: Sequence[_Take], name: str) -> str:
 
 def _masks(source: Path, takes: Sequence[_Take]) -> str:
     """The pattern of the masks, which must be the same for all takes."""
-    first, *others = [_of_masks(take) for take in takes]
+    first, *others = [_mask_name(take) for take in takes]
     for take, name in zip(takes[1:], others, strict=True):
         if name != first:
             raise InputError(f"{take.folder / MASKS}: masks are called {name}, those of {takes[0].name} {first}")
     return _pattern(source, takes, f"{MASKS}/{first}")
 
 
-def _of_masks(take: _Take) -> str:
+def _mask_name(take: _Take) -> str:
     """How the masks of a take are called: videos as those of the cameras, or folders of images that count from 0."""
     folder, name = take.folder / MASKS, take.videos[0].stem
     for suffix in VIDEOS:

@@ -34,7 +34,7 @@ class Holders:
         return holder
 
     def _base_of_rigid_parts(self) -> int | None:
-        """Where nothing is skinned: the lowest node above all meshes that clips move; still meshes below hang on it.
+        """The lowest node above all meshes that clips move, where nothing is skinned; still meshes below hang on it.
 
         Where a single part moves, it is the node above it; and always the highest node above that is itself a mesh:
         what hangs on a mesh is a part of it.

@@ -34,7 +34,7 @@ ROLES = _CENTRAL | {f"{side}{bone}": f"{side} {part}" for side in ("left", "righ
 
 @dataclass(frozen=True)
 class Vrm:
-    """What a VRM file says about its avatar; an empty one stands for any other file."""
+    """The VRM part of an avatar's file; empty for any other file."""
 
     bones: Mapping[str, int] = field(default_factory=dict)  # humanoid bone to glTF node
     hidden_nodes: frozenset[int] = frozenset()  # nodes whose meshes only the wearer's own camera shows
@@ -103,7 +103,7 @@ def _first_person(document: Document, vrm: dict[str, Any], where: str) -> tuple[
 
 
 def _credit(vrm: dict[str, Any]) -> list[str]:
-    """Who made the avatar and what they allow, as far as the file says it."""
+    """Author and licence of the avatar, as far as the file says them."""
     meta = vrm.get("meta")
     if not isinstance(meta, dict):
         return []

@@ -27,7 +27,7 @@ class Mesh:
 
 
 class _Obj:
-    """What a .obj holds, as it is read.
+    """The content of a .obj, as it is read.
 
     trimesh would part vertices along UV seams, 5,514 into 5,964 of DDC's person, for which skin weights count them.
     """

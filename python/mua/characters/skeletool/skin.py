@@ -13,7 +13,7 @@ from mua.errors import InputError
 
 @dataclass(frozen=True, eq=False)
 class BoneWeights:
-    """What carries V vertices."""
+    """The bones that carry V vertices, and their weights."""
 
     bones: tuple[str, ...]
     joints: tuple[int, ...]  # of the skeleton, by bone: it ends there

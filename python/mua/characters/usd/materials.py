@@ -143,7 +143,7 @@ def _channel(texture: UsdShade.Shader, output: str, path: Path) -> Array:
 
 
 def _scale(texture: UsdShade.Shader) -> Array:
-    """What a texture is multiplied by [4], linear."""
+    """The linear factors [4] of a texture."""
     return np.array(_constant(texture, "scale", (1, 1, 1, 1)), float)
 
 

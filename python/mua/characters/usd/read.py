@@ -89,7 +89,7 @@ def _meshes(stage: Usd.Stage, path: Path) -> Scene:
 
 
 def _drawn(stage: Usd.Stage, messages: Messages) -> dict[object, Usd.Prim]:
-    """The meshes that a render of the stage shows, by path; those that it hides are told."""
+    """The meshes that a render of the stage shows, by path; those that it hides are noted."""
     drawn = {}
     for prim in stage.Traverse(PREDICATE):
         if not prim.IsA(UsdGeom.Mesh):

@@ -65,7 +65,7 @@ def both(**angles: float) -> Angles:
 
 
 def mirrored(angles: Angles) -> Angles:
-    """What the other side does."""
+    """The angles with left and right exchanged."""
     swap = {"left": "right", "right": "left"}
     found = {}
     for name, angle in angles.items():

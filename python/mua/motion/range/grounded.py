@@ -1,4 +1,4 @@
-"""Where the body is: on the floor with whatever is lowest, which stays where it stands while the body moves over it."""
+"""The body's path: its lowest point is on the floor, and stays where it stands while the body moves over it."""
 
 import numpy as np
 
@@ -22,7 +22,7 @@ TOUCHING = [*_CENTRAL, *((f"{side} {joint}", at, skin) for side in SIDES for joi
 
 
 def path(local: Array, angles: Array) -> Array:
-    """Where the hips are [F, 3], metres, while the body's joints are turned by `local` [F, J, 4]."""
+    """Positions of the hips [F, 3], metres, while the body's joints are turned by `local` [F, J, 4]."""
     turned, at = BODY.world(local, BODY.with_root(np.zeros((len(local), 3))))
     joints = [JOINT[joint] for joint, *_ in TOUCHING]
     points = at[:, joints] + rotation.rotate(turned[:, joints], np.array([point for _, point, _ in TOUCHING]))

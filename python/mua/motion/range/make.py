@@ -30,7 +30,7 @@ STILL = np.radians(1)  # a joint whose rotation varies less in all clips is not 
 
 
 def motion_range(character: Character, clips: Sequence[Clip], *, frames: int, seed: int) -> list[Clip]:
-    """What the character's joints can do, as much of it as `frames` that are recorded show; the seed says which.
+    """Clips of what the character's joints can do, as many as `frames` recorded frames show; the seed chooses them.
 
     Joints that it does not move, and bones whose length the `clips` of the user set, are as these have them on the
     average.
@@ -118,7 +118,7 @@ def _rest(skeleton: Skeleton, clips: Sequence[Clip]) -> Clip:
 
 
 def _moved_by(clips: Sequence[Clip], joints: Array) -> list[int]:
-    """Those of `joints` that the clips turn."""
+    """The `joints` that the clips turn."""
     if not clips:
         return []
     turns = np.concatenate([clip.rotations for clip in clips])

@@ -75,7 +75,7 @@ def _along(at: Array, begin: str, end: str) -> Array:
 
 
 def _distance(points: Array, begin: Array, end: Array) -> Array:
-    """From points [N, P, 3] to lines [N, 3] that begin and end there, [N, P]."""
+    """Distances [N, P] from points [N, P, 3] to lines that begin and end at [N, 3]."""
     axis = (end - begin)[:, None]
     from_begin = points - begin[:, None]
     share = np.sum(from_begin * axis, axis=-1) / np.maximum(np.sum(axis * axis, axis=-1), 1e-12)

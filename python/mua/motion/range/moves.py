@@ -1,4 +1,4 @@
-"""What a person does, pose by pose: walks, reaches, kicks, bends, and what is done on the floor."""
+"""The moves of a person, pose by pose: walking, reaching, kicking, bending, and moves on the floor."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -17,12 +17,12 @@ def key(seconds: float, *limbs: Angles, **trunk: float) -> Key:
 
 
 def other_side(keys: Sequence[Key]) -> tuple[Key, ...]:
-    """The same with left and right exchanged."""
+    """The keys with left and right exchanged."""
     return tuple(replace(one, angles=mirrored(one.angles)) for one in keys)
 
 
 def with_turn(keys: Sequence[Key], turn: float) -> tuple[Key, ...]:
-    """The same while the body turns to the left by so many degrees in all."""
+    """The keys with a turn of the body to the left, `turn` degrees in all."""
     steps = [turn * (place + 1) / len(keys) for place in range(len(keys))]
     return tuple(replace(one, angles=one.angles | {"turn": step}) for one, step in zip(keys, steps, strict=True))
 

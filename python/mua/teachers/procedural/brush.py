@@ -1,4 +1,4 @@
-"""What a brush is given and how it lays one colour over another."""
+"""The texels that a brush paints on, and how one colour is laid over another."""
 
 from dataclasses import dataclass
 
@@ -11,7 +11,7 @@ EDGE = 0.0012  # metres over which one colour turns into the next
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """What is known of the texels of a part, all over [H, W]."""
+    """The texels [H, W] of a part: where each lies on it."""
 
     points: Array  # [H, W, 3] rest position, metres
     around: Array  # [H, W] 0..1 along the columns

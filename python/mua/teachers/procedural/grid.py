@@ -56,7 +56,7 @@ def close(points: Array) -> Array:
 
 
 def mirrored(points: Array) -> Array:
-    """The same grid [R, C + 1, 3] on the other side of the body, still outward."""
+    """The grid [R, C + 1, 3] mirrored to the other side of the body, still facing outward."""
     return np.asarray(points[:, ::-1] * np.array([-1.0, 1, 1]))
 
 

@@ -1,4 +1,4 @@
-"""A performance told by hips, trunk, feet on the ground and directions of the arms, turned into joint rotations."""
+"""A performance given by hips, trunk, feet on the ground and directions of the arms, turned into joint rotations."""
 
 from dataclasses import dataclass
 
@@ -122,7 +122,7 @@ def _gesture(local: Array, side: str, arm: Arm, outward: float) -> None:
 
 
 def _steady(rotations: Array) -> Array:
-    """The same rotations [F, J, 4] without jumps between q and -q."""
+    """Rotations [F, J, 4] whose signs do not jump between q and -q."""
     flips = np.where(np.sum(rotations[1:] * rotations[:-1], axis=-1) < 0, -1.0, 1.0)
     rotations[1:] *= np.cumprod(flips, axis=0)[..., None]
     return rotations

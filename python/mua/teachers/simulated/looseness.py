@@ -16,7 +16,7 @@ FIRM_LOOSENESS = 0.05
 SOFT_LOOSENESS = 0.4  # of clothes and soft tissue on a person
 UNKNOWN_LOOSENESS = 0.3  # of everything on a skeleton whose joint names say nothing
 SMALL = 0.12  # metres: a separate piece of this size or less (eye, tooth, button) is rigid
-BLUR = 12  # passes over the edges, so that firm parts do not begin with a step
+BLUR = 12  # smoothing passes over the edges, so that firm parts do not begin with a step
 
 
 def estimate_looseness(character: Character) -> Array:

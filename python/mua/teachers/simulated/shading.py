@@ -1,8 +1,8 @@
 """Light on the simulated surface: a sky, a lamp and the shadow of near limbs, in the frame that the body faces.
 
 The light turns with the body's heading, so that a colour depends on the pose alone and a student that reads
-heading-normalised poses can learn it. Everything is smooth in normals and distances: the edge of a hard shadow
-would be finer than what a student holds.
+heading-normalised poses can show it. Everything is smooth in normals and distances: the edge of a hard shadow
+would be finer than what a student can show.
 """
 
 # mypy: disable-error-code="index, operator, attr-defined, no-untyped-def, var-annotated"
@@ -23,7 +23,7 @@ SKY_COLOR = np.array([0.42, 0.46, 0.52])
 GROUND_COLOR = np.array([0.20, 0.18, 0.16])
 WRAP = 0.4  # how far the lamp reaches around the terminator: it is large and near
 DISPLAY_GAMMA = 2.2  # textures and splat colours are display values
-SHADOW = 0.85  # of the light, that a bone hides when it fills the view along the normal
+SHADOW = 0.85  # share of the light that a bone hides when it fills the view along the normal
 SHEEN = 0.10  # display value at the centre of the lamp's reflection
 
 start()

@@ -6,7 +6,7 @@ far as the skinned shape has turned from rest, and loose cloth is pushed out of 
 (Mueller et al. 2007, https://doi.org/10.1016/j.jvcir.2007.01.005; Jacobi iterations: every run gives the same bytes).
 
 The springs are damped near their critical value, so that the state is a function of the last tenths of a second.
-The evening-out keeps what is shorter than about 4 cm small: a student holds no dynamics there.
+The evening-out keeps what is shorter than about 4 cm small: a student has no dynamics there.
 """
 
 # mypy: disable-error-code="index, operator, attr-defined, no-untyped-def, var-annotated"

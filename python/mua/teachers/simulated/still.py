@@ -41,7 +41,7 @@ class StillTeacher:
         return self._whole(pose, self._skinned.posed(joints, stretches))
 
     def _whole(self, pose: Pose, surface: MovedSurface) -> TeacherFrame:
-        """The frame whose dense surface lies there."""
+        """The complete frame of a pose and its dense surface."""
         joints, dual, moved = surface.joints, surface.dual, surface.places
         bind = self._character.mesh.vertices
         canonical = transform(rotation.dual_inverse(dual), moved)
@@ -57,7 +57,7 @@ class StillTeacher:
         return TeacherFrame(pose=pose, mesh=mesh, texture=texture)
 
     def _coarse(self, displacement: Array) -> Array:
-        """What of a displacement [V, 3] the canonical mesh takes on, [T, 3]; the texels' offsets take the rest."""
+        """The part [T, 3] of a displacement [V, 3] that moves the canonical mesh; the texels' offsets take the rest."""
         return np.zeros_like(displacement[self._template])
 
     def _light(self, joints: Array, dual: Array, moved: Array, turn: Array) -> Light:

@@ -47,7 +47,7 @@ class SimulatedTeacher(StillTeacher):
             yield self._whole(pose, moved) if frame in wanted else pose
 
     def _coarse(self, displacement: Array) -> Array:
-        """What of a displacement [V, 3] is long enough for the canonical mesh, [T, 3]."""
+        """The long waves [T, 3] of a displacement [V, 3], which the canonical mesh takes on."""
         return np.asarray(self._longer(displacement)[self._template])
 
     def _light(self, joints: Array, dual: Array, moved: Array, turn: Array) -> Light:

@@ -90,7 +90,7 @@ class SurfaceTexels:
         vertices: Array,  # [V, 3] of the dense surface
         texels: Array,  # [n] int, rows among the valid texels
     ) -> Array:
-        """Where some texels lie on the surface, [n, 3]."""
+        """Positions [n, 3] of some texels on the surface."""
         return np.asarray(self._dense[texels] @ vertices)
 
     def _at_texels(self, values: Array) -> Array:

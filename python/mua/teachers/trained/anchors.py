@@ -1,4 +1,4 @@
-"""Which point of the template a tracked point is: as its file says, or what lay where it was first seen."""
+"""The template's point that each tracked point shows: given by its file, or found where it was first seen."""
 
 from dataclasses import dataclass
 
@@ -11,13 +11,13 @@ from mua.rig.character import Mesh
 from mua.rig.surface_points import interpolate, nearest_barycentrics
 
 NEAR = 16  # triangles by their middles, among which the nearest point is looked for
-FARTHEST = 0.1  # metres on a person from the template: what is farther is no point of it
+FARTHEST = 0.1  # metres on a person: a tracked point farther from the template is not on it
 TOGETHER = 64  # rays that are cut with all triangles at once
 
 
 @dataclass(frozen=True, eq=False)
 class Anchors:
-    """Points of the template; of what lies beside it `found` is False, and the rest means nothing."""
+    """Points of the template; where `found` is False, the other values mean nothing."""
 
     triangles: Array  # [P]
     barycentrics: Array  # [P, 3]
@@ -89,5 +89,5 @@ def first_hits(
 
 
 def places(anchors: Anchors, vertices: Array, faces: Array) -> Array:
-    """Where they lie [P, 3]."""
+    """Positions [P, 3] of the anchors on a posed surface."""
     return interpolate(vertices, faces[anchors.triangles], anchors.barycentrics)

@@ -1,11 +1,11 @@
-"""What each camera makes of colours: an affine map of its own, learnt beside the teacher."""
+"""Colour correction of each camera: an affine map of its own, trained beside the teacher."""
 
 import torch
 from torch import Tensor, nn
 
 
 class ColourCorrection(nn.Module):
-    """Cameras differ from the mean of all by what is learnt; a camera that was left out sees as the mean does."""
+    """How each camera's colours differ from the mean of all; a held-out camera has the mean's colours."""
 
     def __init__(self, cameras: int) -> None:
         super().__init__()
@@ -19,8 +19,8 @@ class ColourCorrection(nn.Module):
         """The image [H, W, 4] as that camera shows it."""
         return torch.cat([image[..., :3] + image @ self._own()[camera].T, image[..., 3:]], dim=-1)
 
-    def unlikeness(self) -> Tensor:
-        """The mean square by which cameras differ from the mean of all, of the sum over their twelve numbers."""
+    def variance(self) -> Tensor:
+        """The squared difference of cameras from the mean of all: summed over twelve numbers, averaged over cameras."""
         return self._own().square().sum(dim=(1, 2)).mean()
 
     def _own(self) -> Tensor:

@@ -39,7 +39,7 @@ class EmbeddedDeformation(nn.Module):
         about = self.blend @ torch.cat([turned.flatten(-2), rest], dim=-1)  # [B, V, 12]
         return (about[..., :9].unflatten(-1, (3, 3)) @ self.vertices[..., None])[..., 0] + about[..., 9:]
 
-    def unlike(
+    def rigidity_error(
         self,
         turns: Tensor,  # [B, G, 3] axis times angle, radians
         moves: Tensor,  # [B, G, 3] metres

@@ -39,7 +39,7 @@ class Undeformed(nn.Module):
 
 
 class DrivableTemplate(nn.Module):
-    """What a deformation makes of the template, posed; gradients reach the deformation and the joints."""
+    """The deformed template, posed; gradients reach the deformation and the joints."""
 
     skin_indices: Tensor  # [V, K]
     skin_weights: Tensor  # [V, K]

@@ -1,4 +1,4 @@
-"""What a training needs of a capture: its subject, the windows of its frames, and its images as tensors."""
+"""A capture as training data: its subject, the windows of its frames, and its images as tensors."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -35,7 +35,7 @@ OUTLINES = 2  # masks of a frame that the template is compared with in one step
 
 @dataclass(frozen=True, eq=False)
 class Filmed:
-    """A capture as it is trained on and looked at; what is held out is only looked at."""
+    """A capture as training data; held-out clips and cameras are only previewed."""
 
     capture: Capture
     views: ViewStore
@@ -48,7 +48,7 @@ class Filmed:
 
     @property
     def cameras(self) -> list[CaptureCamera]:
-        """Those that are learnt from."""
+        """Cameras that the training samples from."""
         return [camera for camera in self.capture.cameras if not camera.held_out]
 
     def windows(self, clip: Clip) -> list[Window]:
@@ -77,9 +77,9 @@ def read_filmed(
     *,
     views: Path,  # folder in which views are kept as they are trained on
 ) -> Filmed:
-    """Read template and motion; raises InputError where either cannot be used or nothing is left to learn from."""
+    """Read template and motion; raises InputError where either cannot be used or nothing is left to train on."""
     if all(clip.held_out for clip in capture.clips) or all(camera.held_out for camera in capture.cameras):
-        raise InputError(f"{capture.file}: every clip or every camera is held out, so nothing is left to learn from")
+        raise InputError(f"{capture.file}: every clip or every camera is held out, so nothing is left to train on")
     character = capture.character()
     still = StillTeacher(character, texels=settings.texels)
     surfels = torch.from_numpy(still.frame(character.skeleton.bind_pose).texture.copy())
@@ -107,7 +107,7 @@ def material_of(filmed: Filmed, perceptual: Perceptual | None = None) -> Materia
 
 @dataclass(frozen=True, eq=False)
 class Outlines:
-    """What the masks of the training frames show of the template (`Observations` of template_training)."""
+    """The masks of the training frames, as `Observations` of template_training."""
 
     material: Material
 

@@ -21,7 +21,7 @@ CODE = 0.1  # standard deviation of the nodes' codes at the start
 
 
 class PartFeatures(nn.Module):
-    """What P body parts see of the motion; one layer for all."""
+    """Features of the motion for P body parts, by one layer that all share."""
 
     reach: Tensor  # [P, D] what each entry of a descriptor is multiplied by before a part sees it
 
@@ -47,7 +47,7 @@ class PartFeatures(nn.Module):
 
 
 class NodeFeatures(nn.Module):
-    """What G nodes know of the motion."""
+    """Features of the motion for G nodes."""
 
     mix: Tensor  # [G, P] how much each node hangs on each part
     neighbours: Tensor  # [G, N]
@@ -106,7 +106,7 @@ class OwnReadout(nn.Module):
 
 
 def seen_joints(rig: Rig, encoding: PoseEncoding) -> list[int]:
-    """The joints that a descriptor tells of, the root first: one for each body part."""
+    """The joints that a descriptor encodes, the root first: one for each body part."""
     return [rig.skeleton.root, *sorted({*encoding.joints, *encoding.translated})]
 
 

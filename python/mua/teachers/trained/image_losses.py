@@ -1,4 +1,4 @@
-"""What a teacher is trained to: images like those of the cameras (paper, Preliminaries)."""
+"""The loss of a teacher's training: its images against those of the cameras (paper, Preliminaries)."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ Perceptual = Callable[[Tensor, Tensor], Tensor]  # of two images [1, 3, H, W] in
 
 @dataclass(frozen=True, eq=False)
 class Material:
-    """What a training has of a person; windows are those of the frames of `views`."""
+    """Training data of a person; `windows` holds one window for each frame of `views`."""
 
     views: Views
     windows: Sequence[Window]
@@ -32,8 +32,8 @@ class Material:
     tracks: Sequence[TexelTracks] = ()  # of each frame, where points were followed
 
 
-class Lesson(nn.Module):
-    """The teacher with what is learnt beside it and needed in training alone."""
+class ImageLoss(nn.Module):
+    """The mean loss over views, with the parameters that are trained beside the teacher's own."""
 
     def __init__(
         self,
@@ -46,7 +46,7 @@ class Lesson(nn.Module):
         super().__init__()
         self.teacher = teacher
         self.correction = ColourCorrection(material.views.cameras)
-        self.colour_correction = settings.colour_correction  # or it stays none
+        self.colour_correction = settings.colour_correction  # False: it stays zero
         self.looks = nn.Parameter(torch.zeros(material.views.frames, settings.code))
         self.refinement = refinement
         self._material, self._weights, self._rasteriser = material, settings.weights, settings.rasteriser
@@ -63,11 +63,11 @@ class Lesson(nn.Module):
         for row, colour in zip(rows.tolist(), backgrounds, strict=True):
             frame, camera = divmod(row, self._material.views.cameras)
             views.setdefault(frame, []).append((camera, colour))
-        losses = [self._of_frame(frame, of, moving=moving) for frame, of in views.items()]
+        losses = [self._frame_loss(frame, of, moving=moving) for frame, of in views.items()]
         return torch.stack(losses).sum() / len(rows)
 
     def window(self, frame: int) -> Window:
-        """The window of a frame, its poses refined where they are learnt.
+        """The window of a frame, with refined poses where poses are refined.
 
         Descriptors stay those of the given poses, on which the template was trained.
         """
@@ -80,17 +80,17 @@ class Lesson(nn.Module):
 
     @torch.no_grad()
     def keep_mean_look(self) -> None:
-        """Give the teacher the mean of the looks: what it shows of any motion."""
+        """Give the teacher the mean of the frames' looks, which it shows in any motion."""
         self.teacher.look.copy_(self.looks.mean(dim=0))
 
-    def _of_frame(self, index: int, views: Sequence[tuple[int, Tensor]], *, moving: bool) -> Tensor:
+    def _frame_loss(self, index: int, views: Sequence[tuple[int, Tensor]], *, moving: bool) -> Tensor:
         """The sum of the losses of a frame's views, which are drawn in one call."""
         window = self.window(index)
         frame = self.teacher(window, look=self.looks[index], moving=moving)
         splats = self.teacher.splats(frame, window.joints[0])
         seen = [(self._material.views.see(index, camera), camera, colour) for camera, colour in views]
         seen = [of for of in seen if of[0].weight > 0]  # where nobody is, nothing is drawn
-        loss = len(views) * (self._restraint(frame, index) + self._misalignment(frame, splats, index))
+        loss = len(views) * (self._regularisation(frame, index) + self._misalignment(frame, splats, index))
         if not seen:
             return loss + 0 * frame.texture.sum()  # that has a gradient in every stage
         pictures = draw_views(splats, [one.eye for one, _, _ in seen], by=self._rasteriser)
@@ -119,10 +119,10 @@ class Lesson(nn.Module):
         error = self._material.tracks[index].error(frame.posed, splats, offsets, size=self._size)
         return self._weights.tracks / (UNIT * self._size) ** 2 * error
 
-    def _restraint(self, frame: Frame, index: int) -> Tensor:
-        """Keeps what images do not decide near nothing."""
+    def _regularisation(self, frame: Frame, index: int) -> Tensor:
+        """Regularisation: keeps near zero what the images do not determine."""
         loss = self._weights.residual * frame.added[:, GEOMETRY].square().mean()
         beside = self.looks[index].square().sum()
         if self.refinement is not None:
             beside = beside + self.refinement.size()
-        return loss + self._weights.beside * beside + self._weights.correction * self.correction.unlikeness()
+        return loss + self._weights.beside * beside + self._weights.correction * self.correction.variance()

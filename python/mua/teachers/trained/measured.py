@@ -1,4 +1,4 @@
-"""The surfaces that a capture has of its frames, as what the drivable template is trained on."""
+"""The surfaces of a capture's frames, on which the drivable template is trained."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -41,7 +41,7 @@ class MeasuredSurfaces:
 
     @cached_property
     def _cloud(self) -> Callable[[int], Cloud]:
-        """Of a frame; to read a surface takes longer than to compare the template with it."""
+        """Clouds of frames, cached: reading a surface takes longer than comparing the template with it."""
         return lru_cache(KEPT)(lambda frame: Cloud.of(self._surface(frame), POINTS, size=self.size))
 
     def _surface(self, frame: int) -> Mesh:

@@ -1,6 +1,6 @@
-"""How far a posed template is from what was measured of a frame: its surface, and its own smoothness.
+"""Distance of a posed template from the measured surface of a frame, and the roughness of its deformation.
 
-Which points are nearest is taken as given; gradients reach the template's vertices alone.
+Nearest points are taken as fixed; gradients reach the template's vertices alone.
 """
 
 from dataclasses import dataclass
@@ -39,7 +39,7 @@ class Cloud:
 
     @cached_property
     def tree(self) -> cKDTree:
-        """Over points and the way that they face."""
+        """A tree over the points and their normals."""
         return cKDTree(self.features(self.points, self.normals))
 
     def features(self, points: Array, normals: Array) -> Array:

@@ -23,12 +23,12 @@ from mua.teachers.trained.texels import TexelNets
 from mua.teachers.trained.windows import Window
 
 CONSTANT = slice(11, 14)  # channels of a splat's colour from everywhere
-MOST_RESIDUAL = 20.0  # of a network's output, in units: a splat that is lost does not leave the image for good
+MOST_RESIDUAL = 20.0  # largest output of a network, in units: a splat cannot move where no image shows it any more
 
 
 @dataclass(frozen=True, eq=False)
 class Subject:
-    """Who is taught: the rig, and the surfels that its character's own textures ask for."""
+    """The person that a teacher is trained for: the rig, and the surfels of its character's own textures."""
 
     rig: Rig
     surfels: Tensor  # [N, 23] raw channels in the bind pose
@@ -36,7 +36,7 @@ class Subject:
 
 
 class Frame(NamedTuple):
-    """What the teacher says of one pose."""
+    """The teacher's output for one pose."""
 
     canonical: Tensor  # [V, 3] metres
     texture: Tensor  # [N, 23] raw channels
@@ -45,7 +45,7 @@ class Frame(NamedTuple):
 
 
 class TeacherModel(nn.Module):
-    """Everything that a trained teacher needs to be asked for frames of any motion."""
+    """All that a trained teacher needs for frames of any motion."""
 
     surfels: Tensor  # [N, 23]
     look: Tensor  # [code] the mean over training frames
@@ -111,7 +111,7 @@ def draw(splats: TorchSplats, eye: Eye) -> Tensor:
 
 
 def draw_views(splats: TorchSplats, eyes: Sequence[Eye], *, by: Rasteriser = "mua") -> list[Tensor]:
-    """The same of several cameras."""
+    """Premultiplied sRGB and alpha [H, W, 4] of several cameras."""
     if by == "gsplat":
         return gsplat_views(splats, eyes)
     bounds = torch.stack([splats.centres.amin(dim=0), splats.centres.amax(dim=0)]).detach()

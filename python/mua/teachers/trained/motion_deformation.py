@@ -1,4 +1,4 @@
-"""What motion does to the template in the bind pose: f_eg(F_eg(descriptor)) + F_delta(descriptor), both learnt."""
+"""How motion deforms the template in the bind pose: f_eg(F_eg(descriptor)) + F_delta(descriptor), both trained."""
 
 from dataclasses import dataclass
 
@@ -69,7 +69,7 @@ class MotionDeformation(nn.Module):
         *,
         offsets: bool = True,  # False: F_eg alone
     ) -> Deformed:
-        """The same with what led to it."""
+        """Canonical vertices with the turns, moves and offsets that they come from."""
         inputs = ((descriptors.to(self.mean) - self.mean) / self.scale).clamp(-FARTHEST, FARTHEST)
         motion = self.node_motion(self.node_features(inputs))
         turns, moves = TURN * motion[..., :3], MOVE * self._size * motion[..., 3:]

@@ -1,4 +1,4 @@
-"""What every training of a teacher shares: which parameters learn, and sums that a run which goes on repeats."""
+"""Shared by all training of teachers: which parameters get gradients, and sums that a resumed run repeats."""
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -8,7 +8,7 @@ from torch import nn
 
 
 @contextmanager
-def learning(module: nn.Module, parameters: Sequence[nn.Parameter]) -> Iterator[None]:
+def gradients_for(module: nn.Module, parameters: Sequence[nn.Parameter]) -> Iterator[None]:
     """Gradients for these parameters alone; processes exchange no others."""
     chosen = {id(parameter) for parameter in parameters}
     for parameter in module.parameters():
@@ -18,8 +18,8 @@ def learning(module: nn.Module, parameters: Sequence[nn.Parameter]) -> Iterator[
 
 
 @contextmanager
-def same_bytes() -> Iterator[None]:
-    """Sums in one order, where torch has one: a run that goes on adds up the same numbers."""
+def deterministic() -> Iterator[None]:
+    """Sums in one order, where torch has one: a resumed run adds up the same numbers."""
     before = torch.are_deterministic_algorithms_enabled()
     torch.use_deterministic_algorithms(True, warn_only=True)
     try:

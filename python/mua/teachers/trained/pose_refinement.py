@@ -9,11 +9,11 @@ from mua.pose.skeleton import Skeleton
 from mua.splatting.posing import dual_transform, multiply, rotate
 
 MOVE = 0.01  # metres on a person along each axis that the root may be moved for each degree that joints may be turned
-VANISHES = 1e-4  # length of a twist that says of no heading: who is upside down faces nowhere
+VANISHES = 1e-4  # length of a twist below which there is no heading: a person upside down faces nowhere
 
 
 class PoseRefinement(nn.Module):
-    """Of the frames of one training; unseen motion is posed as it is given."""
+    """Small corrections of the poses of training frames; unseen motion keeps its given poses."""
 
     rotations: Tensor  # [F, k, J, 4]
     translations: Tensor  # [F, k, J, 3]
@@ -41,7 +41,7 @@ class PoseRefinement(nn.Module):
         self.turns = nn.Parameter(torch.zeros(len(rotations), len(self.parents), 3))  # half angles in shares of `most`
 
     def forward(self, frame: int) -> Tensor:
-        """Dual quaternions [k, J, 8] of a frame's window, bind pose to world: what is off is off in all of it."""
+        """Dual quaternions [k, J, 8] of a frame's window, bind pose to world; all of it gets the same correction."""
         half = torch.tanh(self.turns[frame]) * (self.most / 2)
         turn = nn.functional.normalize(torch.cat([torch.ones_like(half[..., :1]), half], dim=-1), dim=-1)
         moved = torch.zeros_like(self.translations[frame])
@@ -53,24 +53,24 @@ class PoseRefinement(nn.Module):
         self,
         joints: Tensor,  # [J, 8] bind pose to world
     ) -> Tensor:
-        """Where the root is, [3], metres."""
+        """The root's position [3], metres."""
         return dual_transform(joints[self.root], self.rest)
 
     def back(
         self,
         joints: Tensor,  # [J, 8] bind pose to world
     ) -> Tensor:
-        """The turn that takes the heading back, [4], as `mua.pose.descriptor.heading_of` has it."""
+        """The rotation [4] that removes the heading, as `mua.pose.descriptor.heading_of` has it."""
         twist = joints[self.root, :4] * joints.new_tensor([1.0, 0, -1, 0])
         upright = joints.new_tensor([1.0, 0, 0, 0])
         return nn.functional.normalize(torch.where(twist.norm() < VANISHES, upright, twist), dim=0)
 
     def size(self) -> Tensor:
-        """The mean square of what is learnt."""
+        """The mean square of the corrections."""
         return self.turns.square().mean() + self.moves.square().mean()
 
     def _skinning(self, rotations: Tensor, translations: Tensor) -> Tensor:
-        """As `mua.pose.skeleton.Skeleton.skinning`."""
+        """Dual quaternions as `mua.pose.skeleton.Skeleton.skinning` gives them, with gradients."""
         turned: list[Tensor] = []
         placed: list[Tensor] = []
         for joint, parent in enumerate(self.parents):

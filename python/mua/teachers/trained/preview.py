@@ -1,4 +1,4 @@
-"""How a training looks: images of a camera that it does not learn from, beside the teacher's."""
+"""Previews of a training: images of a camera that it is not trained on, beside the teacher's."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ from PIL import Image
 
 from mua.arrays import Array
 from mua.files.write import replacing
-from mua.teachers.trained.image_losses import Lesson
+from mua.teachers.trained.image_losses import ImageLoss
 from mua.teachers.trained.model import TeacherModel, draw
 from mua.teachers.trained.views import Seen
 from mua.teachers.trained.windows import Window
@@ -30,13 +30,13 @@ class Preview:
         """Whether an image is made after a step."""
         return step == steps or step % max(steps // PICTURES, LEAST_STEPS) == 0
 
-    def __call__(self, lesson: Lesson, name: str, *, moving: bool) -> float:
+    def __call__(self, image_loss: ImageLoss, name: str, *, moving: bool) -> float:
         """Write an image: each view's image, the teacher's, and how they differ; returns the mean PSNR."""
         rows, scores = [], []
-        look = lesson.looks.detach().mean(dim=0)
+        look = image_loss.looks.detach().mean(dim=0)
         for seen, window in self.seen:
             truth = seen.over(torch.ones(3)).numpy()
-            shown = picture_of(lesson.teacher, window, seen, look=look, moving=moving)
+            shown = picture_of(image_loss.teacher, window, seen, look=look, moving=moving)
             scores.append(psnr(shown, truth))
             rows.append(np.hstack([truth, shown, 1 - GAIN * np.abs(shown - truth)]))
         width = max(row.shape[1] for row in rows)

@@ -11,16 +11,16 @@ Rasteriser = Literal["mua", "gsplat"]
 
 @dataclass(frozen=True)
 class LossWeights:
-    """What each term counts in the loss; L1 and SSIM as in ASH (Pang et al. 2024, https://arxiv.org/abs/2312.05941)."""
+    """The weight of each term of the loss; L1 and SSIM as in ASH (Pang et al. 2024, https://arxiv.org/abs/2312.05941)."""
 
     l1: float = 0.9
     ssim: float = 0.1
-    alpha: float = 0.1  # of the opacity beside the mask
-    perceptual: float = 0.1  # of LPIPS, where its weights are given
-    tracks: float = 0.02  # of tracked points' squared distance in centimetres on a person, where there are tracks
-    residual: float = 1e-3  # of the square of what the networks add to the geometry, in `texels.UNITS`
-    beside: float = 1e-2  # of the square of frames' codes and of the refinement of poses
-    correction: float = 0.1  # of the square of what a camera's colours differ from those of the others
+    alpha: float = 0.1  # L1 of opacity against the mask
+    perceptual: float = 0.1  # LPIPS, where its weights are given
+    tracks: float = 0.02  # squared distance of tracked points in centimetres on a person, where there are tracks
+    residual: float = 1e-3  # square of what the networks add to the geometry, in `texels.UNITS`
+    beside: float = 1e-2  # square of frames' codes and of the refinement of poses
+    correction: float = 0.1  # squared difference of a camera's colours from the others'
 
 
 @dataclass(frozen=True)
@@ -28,13 +28,13 @@ class TeacherSettings:
     """Sizes and schedules of one teacher."""
 
     texels: int  # H = W of the texture
-    channels: int  # of the first level of each UNet; every level below has twice as many, up to eight times
-    levels: int  # of each UNet
-    rows: int  # of a whole image, at most
-    mean: Schedule  # of the mean texture
-    texture: Schedule  # of the networks
-    window: int = 3  # k, poses that a frame is told from
-    code: int = 0  # numbers of a frame's look, for one pose that looks several ways; 0: looks differ by pose alone
+    channels: int  # at the first level of each UNet; every level below has twice as many, up to eight times
+    levels: int  # levels of each UNet
+    rows: int  # largest height of a whole image, pixels
+    mean: Schedule  # for the mean texture
+    texture: Schedule  # for the networks
+    window: int = 3  # k, the poses that a frame depends on
+    code: int = 0  # values of a frame's look, for one pose that looks several ways; 0: looks differ by pose alone
     refine: float = 0.0  # degrees by which a joint of a frame may be turned to fit the images
     colour_correction: bool = True  # whether cameras may differ in colour
     drivable: bool = False  # whether motion deforms the template, or its skin alone

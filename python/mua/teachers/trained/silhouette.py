@@ -1,4 +1,4 @@
-"""What a camera sees of the template's outline: the opacity of discs spread over it, against a mask."""
+"""The template's silhouette in a camera: the opacity of discs spread over it, against a mask."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

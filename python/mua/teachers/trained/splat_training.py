@@ -1,4 +1,4 @@
-"""The training of a teacher: the mean texture first, then what motion changes; a killed run ends in the same bytes."""
+"""The training of a teacher: the mean texture first, then what motion changes; a resumed run ends in the same bytes."""
 
 from collections.abc import Callable
 from functools import partial
@@ -6,35 +6,35 @@ from functools import partial
 import torch
 from torch import Tensor, nn
 
-from mua.teachers.trained.image_losses import Lesson, Material
-from mua.teachers.trained.parameters import learning, same_bytes
+from mua.teachers.trained.image_losses import ImageLoss, Material
+from mua.teachers.trained.parameters import deterministic, gradients_for
 from mua.teachers.trained.settings import TeacherSettings
 from mua.training.optimise import Run, optimise
 
 MEAN, TEXTURE = "mean texture", "texels"
 STAGES = (MEAN, TEXTURE)
 CHECKPOINT_STEPS = 50  # a step takes up to seconds
-# Learning rates over that of the networks: of numbers that each touch a texel, a frame or a camera alone.
+# Learning rates over that of the networks, of parameters that each affect a single texel, frame or camera.
 STILL_RATE, LIGHT_RATE, BESIDE_RATE = 60.0, 20.0, 1.0
 
 
-def train_teacher(lesson: Lesson, material: Material, settings: TeacherSettings, *, run: Run) -> None:
-    """Train the teacher of `lesson` in place; what is kept in the checkpoints of `run` is not trained again."""
-    with same_bytes():
+def train_teacher(image_loss: ImageLoss, material: Material, settings: TeacherSettings, *, run: Run) -> None:
+    """Train the teacher of `image_loss` in place, from the last checkpoint of `run` on."""
+    with deterministic():
         own = run.alone(MEAN)
-        with learning(lesson, [lesson.teacher.mean]):
+        with gradients_for(image_loss, [image_loss.teacher.mean]):
             loss = partial(_loss, material=material, batch=settings.mean.batch, run=own, moving=False)
-            groups: list[dict[str, object]] = [{"params": [lesson.teacher.mean], "weight_decay": 0.0}]
+            groups: list[dict[str, object]] = [{"params": [image_loss.teacher.mean], "weight_decay": 0.0}]
             optimise(
-                lesson, loss, schedule=settings.mean, parameters=groups, stage=MEAN, run=own, every=CHECKPOINT_STEPS
+                image_loss, loss, schedule=settings.mean, parameters=groups, stage=MEAN, run=own, every=CHECKPOINT_STEPS
             )
         own = run.alone(TEXTURE)
-        rates = _rates(lesson)
-        groups = [{"params": learnt, "weight_decay": 0.0, "lr": rate} for learnt, rate in rates]
-        with learning(lesson, [parameter for learnt, _ in rates for parameter in learnt]):
+        rates = _rates(image_loss)
+        groups = [{"params": parameters, "weight_decay": 0.0, "lr": rate} for parameters, rate in rates]
+        with gradients_for(image_loss, [parameter for parameters, _ in rates for parameter in parameters]):
             loss = partial(_loss, material=material, batch=settings.texture.batch, run=own, moving=True)
             optimise(
-                lesson,
+                image_loss,
                 loss,
                 schedule=settings.texture,
                 parameters=groups,
@@ -42,16 +42,16 @@ def train_teacher(lesson: Lesson, material: Material, settings: TeacherSettings,
                 run=own,
                 every=CHECKPOINT_STEPS,
             )
-    lesson.keep_mean_look()
+    image_loss.keep_mean_look()
 
 
-def _rates(lesson: Lesson) -> list[tuple[list[nn.Parameter], float]]:
-    """What the networks' training learns, and its learning rate over theirs."""
-    teacher = lesson.teacher
-    beside = [lesson.correction.change] if lesson.colour_correction else []
-    beside += [lesson.looks] if lesson.looks.numel() else []
-    if lesson.refinement is not None:
-        beside += [lesson.refinement.turns, lesson.refinement.moves]
+def _rates(image_loss: ImageLoss) -> list[tuple[list[nn.Parameter], float]]:
+    """Parameters trained with the networks, each group with its learning rate over that of the networks."""
+    teacher = image_loss.teacher
+    beside = [image_loss.correction.change] if image_loss.colour_correction else []
+    beside += [image_loss.looks] if image_loss.looks.numel() else []
+    if image_loss.refinement is not None:
+        beside += [image_loss.refinement.turns, image_loss.refinement.moves]
     return [
         (list(teacher.nets.parameters()), 1.0),
         ([teacher.still], STILL_RATE),
@@ -67,6 +67,6 @@ def _loss(model: Callable[..., Tensor], *, material: Material, batch: int, run: 
     processes = run.processes
     own = slice(processes.rank, None, processes.count)
     count = len(rows[own])
-    if not count:  # fewer views than processes: one that counts nothing
+    if not count:  # fewer views than processes: a loss of zero
         return 0 * model(rows[:1], backgrounds[:1], moving)
     return model(rows[own], backgrounds[own], moving) * (count * processes.count / len(rows))

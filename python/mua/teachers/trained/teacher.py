@@ -1,4 +1,4 @@
-"""A taught teacher as what is recorded and distilled (mua.teacher)."""
+"""A trained teacher by the protocol that recordings and distillations read (mua.teacher)."""
 
 from collections.abc import Container, Iterator
 
@@ -14,7 +14,7 @@ from mua.teachers.trained.windows import windows
 
 
 class TrainedTeacher:
-    """Frames of any motion on the skeleton of `rig`, as the folder's teacher learnt them from images."""
+    """Frames of any motion on the skeleton of `rig`, by the trained teacher of a folder."""
 
     def __init__(self, folder: PathLike, *, moving: bool = True) -> None:
         """Without `moving` only the mean texture on the skinned template, to compare with."""

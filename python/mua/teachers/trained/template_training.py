@@ -1,7 +1,7 @@
 """The training of the drivable template: first the nodes' motion, then the vertices' offsets beside it.
 
-What was seen of each frame decides: a surface, outlines, tracked points, or several of these. A killed run goes on
-from its last checkpoint and ends in the same bytes.
+The loss compares with what was observed of each frame: a surface, outlines, tracked points, or several of these. A
+killed run resumes from its last checkpoint and ends in the same bytes.
 """
 
 from collections.abc import Callable, Sequence
@@ -19,7 +19,7 @@ from mua.rig.rig import Rig
 from mua.teachers.trained.drivable_template import DrivableTemplate
 from mua.teachers.trained.mesh_losses import Cloud, Samples, chamfer, edges_of, roughness
 from mua.teachers.trained.motion_deformation import Deformed, GraphSizes, MotionDeformation
-from mua.teachers.trained.parameters import learning, same_bytes
+from mua.teachers.trained.parameters import deterministic, gradients_for
 from mua.teachers.trained.silhouette import Outline, silhouette_error
 from mua.teachers.trained.track_losses import Tracks, track_error
 from mua.training.checkpoint import Checkpoints, run_key
@@ -34,14 +34,14 @@ UNIT = 0.01  # metres on a person: an error of 1 in every term that is a length
 
 @dataclass(frozen=True)
 class TemplateWeights:
-    """What each term counts; lengths are in squares of UNIT."""
+    """The weight of each term of the loss; lengths are in squares of UNIT."""
 
     surface: float = 1.0
     tracks: float = 1.0
-    silhouette: float = 100.0  # of the square of the difference in coverage, over what the mask covers
-    rigid: float = 0.1  # of nodes from where neighbours would carry them
-    smooth: float = 1.0  # of the offsets at both ends of an edge
-    offset: float = 0.05  # of the offsets themselves
+    silhouette: float = 100.0  # squared difference in coverage, over what the mask covers
+    rigid: float = 0.1  # distance of nodes from where neighbours would carry them
+    smooth: float = 1.0  # difference of the offsets at both ends of an edge
+    offset: float = 0.05  # length of the offsets
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ class TemplateSettings:
 
 @dataclass(frozen=True, eq=False)
 class Observed:
-    """What was seen of one frame."""
+    """Observations of one frame."""
 
     cloud: Cloud | None = None
     outlines: Sequence[Outline] = ()
@@ -80,7 +80,7 @@ class Observations(Protocol):
         ...
 
     def observe(self, frame: int, generator: torch.Generator) -> Observed:
-        """What was seen of a frame; where that is a choice, as of cameras, the generator makes it."""
+        """What was observed of a frame; choices, such as of cameras, are drawn from the generator."""
         ...
 
 
@@ -100,7 +100,7 @@ def training_run(
     device: torch.device | None = None,
     processes: Processes = ALONE,
 ) -> Run:
-    """What the stages of this training share; its key tells it from others in the same directory."""
+    """The run that the stages of this training share; its key distinguishes it from others in the same directory."""
     key = run_key((settings, encoding), [observations.descriptors, observations.joints])
     return Run(
         torch.Generator().manual_seed(settings.seed),
@@ -120,22 +120,22 @@ def fit_template(
     assert isinstance(deformation, MotionDeformation)
     deformation.prepare(observations.descriptors.cpu(), run.alone("template").generator)
     template.to(run.device)
-    lesson = _Lesson(template, observations, rig, settings, size=run.size)
+    template_loss = _TemplateLoss(template, observations, rig, settings, size=run.size)
     schedules = (settings.nodes, settings.offsets)
     nodes = [*deformation.node_features.parameters(), *deformation.node_motion.parameters()]
     offsets = [*deformation.vertex_features.parameters(), *deformation.vertex_offsets.parameters()]
-    with same_bytes():
-        for stage, schedule, learnt in zip(STAGES, schedules, (nodes, [*nodes, *offsets]), strict=True):
+    with deterministic():
+        for stage, schedule, parameters in zip(STAGES, schedules, (nodes, [*nodes, *offsets]), strict=True):
             own = run.alone(stage)
-            with learning(template, learnt):
-                groups: list[dict[str, object]] = [{"params": learnt, "weight_decay": settings.weight_decay}]
+            with gradients_for(template, parameters):
+                groups: list[dict[str, object]] = [{"params": parameters, "weight_decay": settings.weight_decay}]
                 loss = partial(_mean_loss, frames=len(observations.descriptors), schedule=schedule, run=own)
-                lesson.offsets = stage == STAGES[-1]
-                optimise(lesson, loss, schedule=schedule, parameters=groups, stage=stage, run=own)
+                template_loss.offsets = stage == STAGES[-1]
+                optimise(template_loss, loss, schedule=schedule, parameters=groups, stage=stage, run=own)
     return template.requires_grad_(False).eval()
 
 
-class _Lesson(nn.Module):
+class _TemplateLoss(nn.Module):
     """The template's loss over frames."""
 
     def __init__(
@@ -166,12 +166,12 @@ class _Lesson(nn.Module):
         deformed = deformation.deform(descriptors, offsets=self.offsets)
         posed = self.template.pose(deformed.vertices, joints).posed
         seen = [
-            self._away(own, self._observations.observe(frame, torch.Generator().manual_seed(seed)))
+            self._observation_loss(own, self._observations.observe(frame, torch.Generator().manual_seed(seed)))
             for frame, seed, own in zip(frames.tolist(), seeds.tolist(), posed, strict=True)
         ]
-        return torch.stack(seen).mean() + self._restraint(deformation, deformed)
+        return torch.stack(seen).mean() + self._regularisation(deformation, deformed)
 
-    def _away(self, posed: Tensor, observed: Observed) -> Tensor:
+    def _observation_loss(self, posed: Tensor, observed: Observed) -> Tensor:
         """How far a posed template [V, 3] is from what was seen."""
         weights, loss = self._weights, posed.new_zeros(())
         if observed.cloud is not None:
@@ -182,10 +182,10 @@ class _Lesson(nn.Module):
             loss = loss + weights.silhouette * silhouette_error(posed, self._samples, observed.outlines)
         return loss
 
-    def _restraint(self, deformation: MotionDeformation, deformed: Deformed) -> Tensor:
-        """Keeps the deformation smooth: what lies side by side moves alike."""
+    def _regularisation(self, deformation: MotionDeformation, deformed: Deformed) -> Tensor:
+        """Regularisation: neighbours move alike."""
         weights = self._weights
-        rigid = deformation.graph.unlike(deformed.turns, deformed.moves)
+        rigid = deformation.graph.rigidity_error(deformed.turns, deformed.moves)
         smooth = roughness(deformed.offsets, self._edges)
         offset = deformed.offsets.square().sum(-1).mean()
         return (weights.rigid * rigid + weights.smooth * smooth + weights.offset * offset) / self._unit
@@ -197,6 +197,6 @@ def _mean_loss(model: Callable[..., Tensor], *, frames: int, schedule: Schedule,
     seeds = torch.randint(SEEDS, (schedule.batch,), generator=run.generator)
     own = slice(run.processes.rank, None, run.processes.count)
     count = len(drawn[own])
-    if not count:  # fewer frames than processes: one that counts nothing
+    if not count:  # fewer frames than processes: a loss of zero
         return 0 * model(drawn[:1], seeds[:1])
     return model(drawn[own], seeds[own]) * (count * run.processes.count / len(drawn))

@@ -72,12 +72,12 @@ class SurfaceTextures(nn.Module):
 
 
 class TexelNets(nn.Module):
-    """From the posed template to what its motion adds to raw channels."""
+    """Networks from the posed template to what its motion adds to raw channels."""
 
     units: Tensor  # [23]
 
     def __init__(self, rig: Rig, *, window: int, channels: int, levels: int, code: int, size: float) -> None:
-        """`size` is that of the figure over a person's, `code` how many numbers tell a frame's look."""
+        """`size` is that of the figure over a person's, `code` the number of values in a frame's look."""
         super().__init__()
         self.surface = SurfaceTextures(rig)
         sizes = {"channels": channels, "levels": levels}
@@ -91,7 +91,7 @@ class TexelNets(nn.Module):
         self,
         posed: Tensor,  # [k, V, 3] world, newest first, metres
         root: Tensor,  # [3] of the newest pose, world
-        back: Tensor,  # [4] the turn that takes its heading back
+        back: Tensor,  # [4] the rotation that removes its heading
         code: Tensor,  # [code] its look
     ) -> Tensor:
         """Residuals [N, 23] in `units`."""

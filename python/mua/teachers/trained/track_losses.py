@@ -1,4 +1,4 @@
-"""How far points of the template, and the splats that carry them, are from where they were followed to in a frame."""
+"""Distance of the template's points, and of the splats that carry them, from where they were tracked in a frame."""
 
 from dataclasses import dataclass
 
@@ -40,7 +40,7 @@ class TexelTracks:
         return missed(self.places(posed, splats, offsets), self.tracks, reach=REACH * size)
 
     def places(self, posed: Tensor, splats: TorchSplats, offsets: Tensor) -> Tensor:
-        """Where the texels have the points [P, 3], world, metres; arguments as above."""
+        """The points [P, 3] as the texels carry them, world, metres; arguments as above."""
         turns, own = (values.index_select(0, self.texels) for values in (splats.turns, offsets))
         return _on(posed, self.tracks) + rotate(turns, own)
 
@@ -61,7 +61,7 @@ def missed(
     *,
     reach: float,  # metres
 ) -> Tensor:
-    """The same of points wherever they are; of those seen by one camera, from the ray."""
+    """The same loss for points anywhere; a point seen by one camera counts its distance from the ray."""
     tiny = torch.finfo(points.dtype).tiny
     apart = points - tracks.points
     if tracks.directions is not None:
@@ -72,5 +72,5 @@ def missed(
 
 
 def _on(posed: Tensor, tracks: Tracks) -> Tensor:
-    """Where the template has the points, [P, 3]."""
+    """The points [P, 3] on the posed template."""
     return (tracks.barycentrics.to(posed)[..., None] * gather(posed, tracks.corners)).sum(1)

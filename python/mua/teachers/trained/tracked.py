@@ -1,4 +1,4 @@
-"""The tracked points of a capture as trainings see them: on the template, and on the texels nearest to them."""
+"""A capture's tracked points as training data: on the template, and on the texels nearest to them."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -26,7 +26,7 @@ from mua.teachers.trained.track_losses import TexelTracks, Tracks
 
 @dataclass(frozen=True, eq=False)
 class Tracked:
-    """What was seen of frames, with their tracks."""
+    """Observations of frames with their tracks."""
 
     seen: Observations
     tracks: Sequence[TexelTracks]  # [F]
@@ -44,14 +44,14 @@ class Tracked:
 
 
 def tracks_of(filmed: Filmed) -> list[TexelTracks]:
-    """Those of all training frames; empty where the capture has none. Raises InputError where a file is wrong."""
+    """The tracks of all training frames; empty where the capture has none. Raises InputError where a file is wrong."""
     if filmed.capture.tracks is None and filmed.capture.tracks_2d is None:
         return []
     return [frame for clip in filmed.clips for frame in tracks_of_clip(filmed, clip)]
 
 
 def tracks_of_clip(filmed: Filmed, clip: Clip) -> list[TexelTracks]:
-    """Those of a clip's frames."""
+    """The tracks of a clip's frames."""
     rig, read = filmed.subject.rig, read_tracks(filmed.capture, clip.name)
     joints = rig.skeleton.skinning(clip.rotations, clip.translations)
     skinning = Skinning(rig.skin_indices, rig.skin_weights)

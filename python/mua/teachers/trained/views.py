@@ -1,4 +1,4 @@
-"""What a training sees: views of frames by cameras, as tensors."""
+"""Training views: images of frames by cameras, as tensors."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""What a teacher reads of a frame: a window of poses, as joints and as motion descriptors."""
+"""A teacher's input for a frame: a window of poses, as joints and as motion descriptors."""
 
 from dataclasses import dataclass
 
@@ -24,7 +24,7 @@ class Window:
     joints: Tensor  # [k, J, 8] bind pose to world
     descriptors: Tensor  # [k, D] of mua.pose.descriptor
     root: Tensor  # [3] of the newest, world, metres
-    back: Tensor  # [4] the turn that takes the heading of the newest back
+    back: Tensor  # [4] the rotation that removes the newest pose's heading
 
     def to(self, device: torch.device) -> "Window":
         """On a device."""

@@ -16,10 +16,10 @@ NEEDED = ("matrix", "distortions", "rotation", "translation")
 def read_anipose(path: Path) -> tuple[Calibrated, ...]:
     """The cameras of a file; raises InputError that names camera and value."""
     try:
-        said = tomllib.loads(path.read_text(encoding="utf-8"))
+        content = tomllib.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
         raise InputError(f"{path}: cannot be read as TOML: {error}") from error
-    within = said["cameras"] if isinstance(said.get("cameras"), dict) else said
+    within = content["cameras"] if isinstance(content.get("cameras"), dict) else content
     tables = {key: table for key, table in within.items() if isinstance(table, dict) and "matrix" in table}
     if not tables:
         raise InputError(f"{path}: holds no camera: no table has a matrix")

@@ -40,7 +40,7 @@ class Calibrated:
         translation: Any,  # [3]
         size: Any = None,  # [2]
     ) -> Self:
-        """From OpenCV's matrices, as files hold them; raises InputError where a value cannot be."""
+        """A camera from OpenCV's matrices, as files hold them; raises InputError for impossible values."""
         intrinsic = finite_array(matrix, f"{where}: camera matrix", (3, 3))
         if intrinsic[0, 0] <= 0 or intrinsic[1, 1] <= 0:
             raise InputError(

@@ -76,7 +76,7 @@ def _points(file: Path, person: dict[str, Any]) -> Array:
 
 
 def _names(folder: Path, count: int) -> tuple[str, ...]:
-    """What the first points are, by how many there are."""
+    """The names of the first points, by how many points there are."""
     if count >= len(BODY_25):  # hands and face come after the body
         return BODY_25
     if count == len(COCO):

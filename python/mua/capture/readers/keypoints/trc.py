@@ -24,13 +24,13 @@ def read_trc(path: Path) -> Keypoints:
         raise InputError(f"{path}: cannot be read as text: {error}") from error
     if len(lines) < HEADER or not lines[0].startswith("PathFileType"):
         raise InputError(f"{path}: the first line is {(lines or [''])[0][:40]!r}; expected a .trc with PathFileType")
-    said = dict(zip(lines[1].split("\t"), lines[2].split("\t"), strict=False))
+    header = dict(zip(lines[1].split("\t"), lines[2].split("\t"), strict=False))
     names = tuple(name.strip() for name in lines[3].split("\t")[COLUMNS:] if name.strip())
-    unit, rate = said.get("Units", "").strip().lower(), _number(said.get("DataRate", ""))
+    unit, rate = header.get("Units", "").strip().lower(), _number(header.get("DataRate", ""))
     if unit not in UNITS:
         raise InputError(f"{path}, line 3: Units is {unit!r}; expected {', '.join(UNITS)}")
     if not rate > 0:
-        raise InputError(f"{path}, line 3: DataRate is {said.get('DataRate')!r}; expected frames per second")
+        raise InputError(f"{path}, line 3: DataRate is {header.get('DataRate')!r}; expected frames per second")
     rows = [_row(path, number, line, len(names)) for number, line in enumerate(lines, 1) if number > HEADER]
     found = [row for row in rows if row is not None]
     if not names or not found:

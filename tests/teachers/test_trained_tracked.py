@@ -19,7 +19,7 @@ from mua.rig.bones import figure_scale
 from mua.rig.surface_points import face_normals, interpolate, spread_points
 from mua.teachers.trained import tracked
 from mua.teachers.trained.anchors import Anchors, anchors_of, first_hits, places
-from mua.teachers.trained.image_losses import Lesson
+from mua.teachers.trained.image_losses import ImageLoss
 from mua.teachers.trained.track_losses import TexelTracks, Tracks
 from mua.teachers.trained.tracked import _nearest_texels
 
@@ -126,7 +126,7 @@ def large_figure(points: Array, monkeypatch: pytest.MonkeyPatch) -> list[TexelTr
 
 
 def test_tracks_of_a_clip_are_those_of_its_points_that_lie_on_the_figure(monkeypatch: pytest.MonkeyPatch) -> None:
-    """By the figure's size; what a point belongs to does not depend on those that are left out."""
+    """Near is judged by the figure's size; points that are left out change nothing for the others."""
     own, _ = spread()
     on = 8 * places(own, *template()) + [0.2, 0, 0]  # 3 cm on a person
     off = np.add(on[:5], [9.0, 0, 0])
@@ -163,9 +163,9 @@ def test_texels_carry_the_points_beside_them() -> None:
 @torch.no_grad()
 @pytest.mark.parametrize("offset", [0.0, 0.01])
 def test_a_point_is_where_the_template_and_its_splats_offset_have_it(offset: float) -> None:
-    window, untaught = motion()[0], teacher()
-    frame = untaught(window, moving=False)
-    splats = untaught.splats(frame, window.joints[0])
+    window, untrained = motion()[0], teacher()
+    frame = untrained(window, moving=False)
+    splats = untrained.splats(frame, window.joints[0])
     back = rotation.rotate(rotation.conjugate(splats.turns.double().numpy()), np.array([offset, 0, 0]))
     error = of_texels(shift=0.02).error(frame.posed, splats, torch.tensor(back).float())
     assert float(error) == pytest.approx((0.02 - offset) ** 2, rel=1e-4)
@@ -175,11 +175,11 @@ def test_tracks_pull_the_texels_to_where_points_went() -> None:
     shown = replace(material(), tracks=[of_texels(shift=0.02)] * 3)
     weights = replace(SETTINGS.weights, l1=0.0, ssim=0.0, alpha=0.0, residual=0.0, correction=0.0, tracks=1.0)
     settings = replace(SETTINGS, weights=weights)
-    lesson = Lesson(teacher(settings), shown, settings)
-    loss = lesson(torch.tensor([0, 1]), torch.ones(2, 3), True)
+    image_loss = ImageLoss(teacher(settings), shown, settings)
+    loss = image_loss(torch.tensor([0, 1]), torch.ones(2, 3), True)
     size = figure_scale(subject().rig.mesh.vertices)
     assert float(loss.detach()) == pytest.approx((2 / size) ** 2, rel=1e-3)  # in squares of centimetres on a person
-    (slope,) = torch.autograd.grad(loss, lesson.teacher.still)
+    (slope,) = torch.autograd.grad(loss, image_loss.teacher.still)
     moved = slope[:, 0:3].abs().sum(1)
     assert moved[shown.tracks[0].texels].all()
     assert torch.count_nonzero(moved) <= POINTS

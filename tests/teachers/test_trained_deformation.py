@@ -46,7 +46,7 @@ def test_nothing_moves_at_zero(rig: Rig, graph: EmbeddedGraph) -> None:
     zero = torch.zeros(3, 25, 3, dtype=torch.float64)
     deformation = EmbeddedDeformation(graph, rig).double()
     np.testing.assert_allclose(deformation(zero, zero)[1], rig.mesh.vertices, rtol=0, atol=BUFFER_BOUND)
-    assert deformation.unlike(zero, zero) == 0
+    assert deformation.rigidity_error(zero, zero) == 0
 
 
 def test_a_rigid_motion_of_all_nodes_is_one_of_the_template_and_costs_nothing(rig: Rig, graph: EmbeddedGraph) -> None:
@@ -57,9 +57,9 @@ def test_a_rigid_motion_of_all_nodes_is_one_of_the_template_and_costs_nothing(ri
     turns = turn.expand(1, 25, 3)
     expected = deformation.vertices @ turned.T + torch.tensor([0.1, 0.2, 0.3]).double()
     torch.testing.assert_close(deformation(turns, moves[None])[0], expected, rtol=0, atol=BUFFER_BOUND)
-    assert deformation.unlike(turns, moves[None]) < BOUND**2
+    assert deformation.rigidity_error(turns, moves[None]) < BOUND**2
     moves[7, 1] += 0.01
-    assert deformation.unlike(turns, moves[None]) > 1e-7
+    assert deformation.rigidity_error(turns, moves[None]) > 1e-7
 
 
 def test_gradients_are_those_of_finite_differences_where_nothing_is_turned_too(rig: Rig, graph: EmbeddedGraph) -> None:
@@ -67,7 +67,7 @@ def test_gradients_are_those_of_finite_differences_where_nothing_is_turned_too(r
     towards, weights = random(2, 2, 1, 25, 3), random(3, 1, len(rig.mesh.vertices), 3)
 
     def value(turns: torch.Tensor, moves: torch.Tensor) -> torch.Tensor:
-        return (weights * deformation(turns, moves)).sum() + 100 * deformation.unlike(turns, moves)
+        return (weights * deformation(turns, moves)).sum() + 100 * deformation.rigidity_error(turns, moves)
 
     for at in (torch.zeros(2, 1, 25, 3, dtype=torch.float64), 0.5 * random(4, 2, 1, 25, 3)):
         leaf = at.clone().requires_grad_()

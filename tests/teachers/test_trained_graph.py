@@ -52,7 +52,7 @@ def test_nodes_are_spread_over_the_whole_surface(rig: Rig) -> None:
 
 
 def test_a_weight_is_a_gaussian_that_ends_where_the_next_node_is() -> None:
-    """As wide as half the way there."""
+    """Its width is half the way there."""
     apart = np.arange(INFLUENCES + 2) ** 1.2
     steps = sparse.csr_matrix(np.diag(np.diff(apart), 1))
     line = np.stack([apart, 0 * apart, 0 * apart], axis=1)

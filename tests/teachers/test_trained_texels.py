@@ -1,4 +1,4 @@
-"""What the texture networks read of the posed template, and that they begin with the textured mesh."""
+"""The input of the texture networks from the posed template; before training they show the textured mesh."""
 
 import numpy as np
 import pytest

@@ -17,7 +17,7 @@ from taught import FEW
 
 import mua
 from mua.arrays import Array
-from mua.baking import teacher_stages as lessons
+from mua.baking import teacher_stages
 from mua.capture import open_capture
 from mua.errors import InputError
 from mua.kernels.dq_skinning import blend_vertices
@@ -67,7 +67,7 @@ def test_squares_are_cut_into_triangles(tmp_path: Path) -> None:
     np.testing.assert_array_equal(mesh.faces, [(0, 1, 2), (2, 3, 0)])
 
 
-def test_a_file_that_ends_early_is_a_sentence(tmp_path: Path) -> None:
+def test_rejects_surface_that_ends_early(tmp_path: Path) -> None:
     path = tmp_path / "a.ply"
     trimesh.Trimesh(CORNERS, TRIANGLES, process=False).export(path)
     whole = path.read_bytes()
@@ -87,7 +87,7 @@ def test_a_file_that_ends_early_is_a_sentence(tmp_path: Path) -> None:
     ],
     ids=["no such vertex", "negative", "lines", "nan"],
 )
-def test_a_wrong_surface_is_a_sentence(
+def test_rejects_surface_with_bad_indices(
     tmp_path: Path, vertices: Array, faces: Sequence[Sequence[int]], sentence: str
 ) -> None:
     with pytest.raises(InputError, match=sentence):
@@ -95,7 +95,7 @@ def test_a_wrong_surface_is_a_sentence(
 
 
 @pytest.mark.parametrize("content", [b"", b"solid", b"ply\nformat ascii 1.0\nend_header\n"])
-def test_another_file_is_a_sentence(tmp_path: Path, content: bytes) -> None:
+def test_rejects_file_that_is_no_surface(tmp_path: Path, content: bytes) -> None:
     path = tmp_path / "a.ply"
     path.write_bytes(content)
     with pytest.raises(InputError, match=r"a\.ply: "):
@@ -114,7 +114,7 @@ def test_surfaces_may_be_in_millimetres(tmp_path: Path, unit: float) -> None:
 
 
 @pytest.mark.parametrize("vertices", [CORNERS * 0.5, CORNERS * 8.5 - 3.4, CORNERS * 1.7 + [0, 3.0, 0]])
-def test_surfaces_of_another_world_are_a_sentence(tmp_path: Path, vertices: Array) -> None:
+def test_rejects_surfaces_of_another_world(tmp_path: Path, vertices: Array) -> None:
     with pytest.raises(InputError, match="expected metres or millimetres in the world of the cameras"):
         unit_of(write_ply(tmp_path / "a.ply", vertices), CORNERS * 1.7)
 
@@ -126,7 +126,7 @@ def surfaces_of(folder: Path, count: int) -> MeasuredSurfaces:
 
 
 def test_a_surface_is_measured_by_the_size_of_the_figure(tmp_path: Path) -> None:
-    """Which decides how much the way that points face counts."""
+    """The size decides how much normals count beside distances."""
     avatar = synthetic_avatar()
     rig, large = avatar.rig, replace(avatar.rig, mesh=replace(avatar.rig.mesh, vertices=4 * avatar.rig.mesh.vertices))
     for own in (rig, large):
@@ -166,12 +166,10 @@ def test_no_more_surfaces_are_held_than_there_is_room_for(tmp_path: Path, monkey
         surfaces.observe(0, generator)
 
 
-def test_a_capture_with_meshes_teaches_how_the_template_deforms(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_capture_with_meshes_trains_how_the_template_deforms(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(settings.PRESETS, "tiny", FEW)
     few = Schedule(steps=2, batch=1, lr=1e-2)
-    monkeypatch.setattr(lessons, "TEMPLATE", TemplateSettings(nodes=few, offsets=few, samples=300))
+    monkeypatch.setattr(teacher_stages, "TEMPLATE", TemplateSettings(nodes=few, offsets=few, samples=300))
     folder = make_capture(tmp_path / "capture").folder
     said = json.loads((folder / "capture.json").read_text())
     said["meshes"] = "meshes/{clip}/{frame:06d}.ply"

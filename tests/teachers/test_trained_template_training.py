@@ -1,4 +1,4 @@
-"""The template learns from surfaces, outlines and tracks, and a killed training ends in the same bytes."""
+"""The template is trained on surfaces, outlines and tracks, and a killed training ends in the same bytes."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -41,15 +41,15 @@ def error(template: DrivableTemplate, seen: Swinging, rig: Rig) -> float:
 @pytest.mark.parametrize(
     ("see", "left"), [(surfaces, 0.35), (outlines, 0.7), (tracks, 0.45)], ids=["surfaces", "outlines", "tracks"]
 )
-def test_the_template_learns_how_motion_deforms_it(
+def test_the_template_is_trained_to_how_motion_deforms_it(
     rig: Rig, see: Callable[[Rig], Callable[[Array], Observed]], left: float, tmp_path: Path
 ) -> None:
     seen = swinging(rig, see(rig))
     skinned = error(DrivableTemplate(rig), seen, rig)
     assert skinned > 0.1 * RADIUS
-    learnt = trained(seen, rig, SETTINGS, tmp_path)
-    assert error(learnt, seen, rig) < left * skinned
-    assert not any(parameter.requires_grad for parameter in learnt.parameters())
+    template = trained(seen, rig, SETTINGS, tmp_path)
+    assert error(template, seen, rig) < left * skinned
+    assert not any(parameter.requires_grad for parameter in template.parameters())
 
 
 def test_a_killed_training_ends_in_the_same_bytes(rig: Rig, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

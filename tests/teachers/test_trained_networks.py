@@ -1,4 +1,4 @@
-"""Networks of the template: what they see, what they start from, and what they do far from what was seen."""
+"""Networks of the template: their input, their start, and their output for poses far from training."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""What a training takes of a capture: nothing that is held out, each frame with its own poses, and what it looks at."""
+"""Training data from a capture: nothing that is held out, each frame with its own poses, and what it looks at."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -27,7 +27,7 @@ from mua.teachers.trained.from_capture import (
     read_filmed,
     refinement_of,
 )
-from mua.teachers.trained.image_losses import Lesson
+from mua.teachers.trained.image_losses import ImageLoss
 from mua.teachers.trained.preview import Preview, picture_of, psnr
 from mua.teachers.trained.track_losses import TexelTracks
 from mua.teachers.trained.tracked import tracks_of
@@ -51,11 +51,11 @@ def filmed(capture: Capture, tmp_path_factory: pytest.TempPathFactory) -> Filmed
 
 @pytest.fixture(scope="module")
 def both(filmed: Filmed) -> Filmed:
-    """Where nothing is held out of the clips."""
+    """The capture with all clips for training."""
     return replace(filmed, clips=(*filmed.clips, *filmed.held), held=())
 
 
-def test_what_is_held_out_is_not_learnt_from(filmed: Filmed, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_is_held_out_is_not_trained_on(filmed: Filmed, monkeypatch: pytest.MonkeyPatch) -> None:
     asked = set()
     monkeypatch.setattr(Filmed, "see", lambda self, clip, frame, camera: asked.add((clip, frame, camera.name)))
     views = material_of(filmed).views
@@ -178,7 +178,7 @@ def test_a_preview_is_of_the_middles_of_both_kinds_of_clips_by_a_camera_held_out
     assert len(preview_of(both, tmp_path).seen) == 1
 
 
-def test_nothing_to_learn_from_is_refused(capture: Capture, tmp_path: Path) -> None:
+def test_refuses_a_capture_with_nothing_to_train_on(capture: Capture, tmp_path: Path) -> None:
     clips = tuple(replace(clip, held_out=True) for clip in capture.clips)
     cameras = tuple(replace(camera, held_out=True) for camera in capture.cameras)
     for nothing in (replace(capture, clips=clips), replace(capture, cameras=cameras)):
@@ -199,17 +199,17 @@ def test_pictures_of_progress_are_few_and_the_last_step_has_one(
 
 def test_a_preview_shows_the_picture_the_teacher_and_their_difference(tmp_path: Path) -> None:
     shown = material()
-    lesson = Lesson(teacher(), shown, SETTINGS)
+    image_loss = ImageLoss(teacher(), shown, SETTINGS)
     with torch.no_grad():
-        lesson.looks.normal_(generator=torch.Generator().manual_seed(1))
+        image_loss.looks.normal_(generator=torch.Generator().manual_seed(1))
     seen = [(shown.views.see(frame, 1), motion()[2 * frame]) for frame in (0, 2)]
-    found = Preview(tmp_path, seen)(lesson, "texels", moving=True)
+    found = Preview(tmp_path, seen)(image_loss, "texels", moving=True)
     with Image.open(tmp_path / "texels.png") as opened:
         pixels = np.asarray(opened) / 255
     rows, scores = [], []
     for one, window in seen:
         truth = one.over(torch.ones(3)).numpy()
-        image = picture_of(lesson.teacher, window, one, look=lesson.looks.mean(dim=0))
+        image = picture_of(image_loss.teacher, window, one, look=image_loss.looks.mean(dim=0))
         rows.append(np.hstack([truth, image, np.clip(1 - 4 * np.abs(image - truth), 0, 1)]))
         scores.append(psnr(image, truth))
     np.testing.assert_allclose(pixels, np.clip(np.vstack(rows), 0, 1), atol=STEP)

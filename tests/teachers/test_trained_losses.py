@@ -119,7 +119,7 @@ def test_tracks_count_where_they_were_seen(mesh: Mesh) -> None:
 
 
 def test_errors_of_a_figure_of_another_size_are_those_of_a_person_in_its_measure(mesh: Mesh) -> None:
-    """With what is out of reach, and with a shell inside another one that faces the other way."""
+    """This includes points out of reach, and a shell inside another one that faces the other way."""
     samples, posed, size = Samples.of(mesh, 150), moved(mesh, by=0.03), 8.0
     inner = Cloud.of(replace(mesh, vertices=mesh.vertices * [0.83, 1, 0.83], faces=mesh.faces[:, ::-1]), 300)
     outer = Cloud.of(mesh, 300)

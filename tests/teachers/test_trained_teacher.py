@@ -1,4 +1,4 @@
-"""A teacher learns from images, goes on after a kill to the same bytes, and is the same in two processes."""
+"""A teacher is trained on images, goes on after a kill to the same bytes, and is the same in two processes."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -26,7 +26,7 @@ from together import start
 
 from mua import rotation
 from mua.teachers.trained.colour_correction import ColourCorrection
-from mua.teachers.trained.image_losses import Lesson, Material
+from mua.teachers.trained.image_losses import ImageLoss, Material
 from mua.teachers.trained.model import MOST_RESIDUAL, TeacherModel
 from mua.teachers.trained.pose_refinement import PoseRefinement
 from mua.teachers.trained.preview import picture_of
@@ -42,11 +42,11 @@ ROUNDING = 1e-3  # of losses: sums in another order, which steps of Adam let gro
 
 
 class Killed(BaseException):
-    """What nothing catches."""
+    """Ends a run; nothing catches it."""
 
 
-def state(lesson: Lesson) -> dict[str, torch.Tensor]:
-    return {name: tensor.clone() for name, tensor in lesson.state_dict().items()}
+def state(image_loss: ImageLoss) -> dict[str, torch.Tensor]:
+    return {name: tensor.clone() for name, tensor in image_loss.state_dict().items()}
 
 
 def same(a: dict[str, torch.Tensor], b: dict[str, torch.Tensor]) -> bool:
@@ -55,11 +55,11 @@ def same(a: dict[str, torch.Tensor], b: dict[str, torch.Tensor]) -> bool:
 
 def test_training_comes_nearer_to_the_pictures_than_a_mean_texture(tmp_path: Path) -> None:
     shown = material()
-    before = errors(Lesson(teacher(), shown, SETTINGS), shown)
-    lesson = taught(tmp_path, settings=replace(SETTINGS, texture=replace(SETTINGS.texture, steps=40)), shown=shown)
-    mean = errors(lesson, shown, moving=False)
+    before = errors(ImageLoss(teacher(), shown, SETTINGS), shown)
+    image_loss = taught(tmp_path, settings=replace(SETTINGS, texture=replace(SETTINGS.texture, steps=40)), shown=shown)
+    mean = errors(image_loss, shown, moving=False)
     assert mean < 0.8 * before
-    assert errors(lesson, shown) < 0.7 * mean
+    assert errors(image_loss, shown) < 0.7 * mean
 
 
 @pytest.mark.parametrize("killed", [(MEAN, 5), (TEXTURE, 3), (TEXTURE, 11)])
@@ -90,16 +90,16 @@ def test_another_seed_is_another_training(tmp_path: Path) -> None:
 @pytest.mark.parametrize("count", [2, 3, 5])
 def test_parts_of_a_batch_add_up_to_its_loss(tmp_path: Path, count: int) -> None:
     shown = material()
-    lesson = Lesson(teacher(), shown, SETTINGS)
+    image_loss = ImageLoss(teacher(), shown, SETTINGS)
 
     def part(rank: int, count: int) -> float:
         run = run_in(tmp_path, processes=Processes(rank, count))
-        return float(_loss(lesson, material=shown, batch=4, run=run, moving=True))
+        return float(_loss(image_loss, material=shown, batch=4, run=run, moving=True))
 
     assert np.mean([part(rank, count) for rank in range(count)]) == pytest.approx(part(0, 1), rel=1e-5)
 
 
-def test_two_processes_teach_as_one_does(tmp_path: Path) -> None:
+def test_two_processes_train_as_one_does(tmp_path: Path) -> None:
     alone: dict[tuple[str, int], float | None] = {}
     taught(tmp_path / "alone", lambda one: alone.update({(one.stage, one.step): one.loss}))
     assert errors_of(start("teach", tmp_path), "teach", tmp_path) == ["", ""]
@@ -114,19 +114,21 @@ def test_a_camera_with_colours_of_its_own_does_not_stain_the_teacher(tmp_path: P
         return replace(seen, image=(seen.image + red).clamp(0, 1))
 
     longer = replace(SETTINGS, texture=Schedule(steps=40, batch=4, lr=3e-3))
-    lesson = taught(tmp_path, settings=longer, shown=material(redder))
-    change = lesson.correction.change - lesson.correction.change.mean(dim=0)
+    image_loss = taught(tmp_path, settings=longer, shown=material(redder))
+    change = image_loss.correction.change - image_loss.correction.change.mean(dim=0)
     assert change[1, 0].sum() > 0.01
     assert change[1, 0].sum() > 3 * change[1, 1:].sum(dim=1).abs().max()
 
 
-def brightness(lesson: Lesson, shown: Material, *, drawn: bool) -> float:
+def brightness(image_loss: ImageLoss, shown: Material, *, drawn: bool) -> float:
     """How much brighter the second camera's first image is than the first one's, on the mean of the person."""
     sides = []
     for camera in range(CAMERAS):
         seen = shown.views.see(0, camera)
         image = (
-            torch.as_tensor(picture_of(lesson.teacher, shown.windows[0], seen)) if drawn else seen.over(torch.ones(3))
+            torch.as_tensor(picture_of(image_loss.teacher, shown.windows[0], seen))
+            if drawn
+            else seen.over(torch.ones(3))
         )
         sides.append(float(((image - 1).mean(dim=2) * seen.mask).sum() / seen.mask.sum()))
     return sides[1] - sides[0]
@@ -136,10 +138,10 @@ def test_sun_from_one_side_stays_in_the_teacher(tmp_path: Path) -> None:
     """Cameras that are alike stand on both sides: what differs is the light, not the cameras."""
     shown = material(sun=0.5)
     longer = replace(SETTINGS, texture=Schedule(steps=25, batch=4, lr=2e-2))
-    lesson = taught(tmp_path, settings=longer, shown=shown)
-    wanted = brightness(lesson, shown, drawn=False)
+    image_loss = taught(tmp_path, settings=longer, shown=shown)
+    wanted = brightness(image_loss, shown, drawn=False)
     assert abs(wanted) > 0.05
-    assert brightness(lesson, shown, drawn=True) == pytest.approx(wanted, rel=0.15)
+    assert brightness(image_loss, shown, drawn=True) == pytest.approx(wanted, rel=0.15)
 
 
 def test_without_colour_correction_cameras_are_alike(tmp_path: Path) -> None:
@@ -148,10 +150,10 @@ def test_without_colour_correction_cameras_are_alike(tmp_path: Path) -> None:
 
     shown = material(darker)
     settings = replace(SETTINGS, texture=Schedule(steps=25, batch=4, lr=2e-2), colour_correction=False)
-    lesson = taught(tmp_path, settings=settings, shown=shown)
-    assert not lesson.correction.change.any()
-    wanted = brightness(lesson, shown, drawn=False)
-    assert brightness(lesson, shown, drawn=True) == pytest.approx(wanted, rel=0.25)
+    image_loss = taught(tmp_path, settings=settings, shown=shown)
+    assert not image_loss.correction.change.any()
+    wanted = brightness(image_loss, shown, drawn=False)
+    assert brightness(image_loss, shown, drawn=True) == pytest.approx(wanted, rel=0.25)
 
 
 @torch.no_grad()
@@ -159,7 +161,7 @@ def test_a_view_that_is_not_trusted_counts_as_little_as_it_weighs() -> None:
     def loss(weight: float) -> float:
         shown = material(lambda seen, camera: replace(seen, weight=weight))
         torch.manual_seed(0)
-        return float(Lesson(teacher(), shown, SETTINGS)(torch.tensor([0]), torch.ones(1, 3)))
+        return float(ImageLoss(teacher(), shown, SETTINGS)(torch.tensor([0]), torch.ones(1, 3)))
 
     whole, half, none = (loss(weight) for weight in (1.0, 0.5, 0.0))
     assert whole > none + 0.01
@@ -167,9 +169,9 @@ def test_a_view_that_is_not_trusted_counts_as_little_as_it_weighs() -> None:
 
 
 def test_the_teacher_keeps_the_mean_look(tmp_path: Path) -> None:
-    lesson = taught(tmp_path)
-    assert lesson.looks.any()
-    torch.testing.assert_close(lesson.teacher.look, lesson.looks.mean(dim=0))
+    image_loss = taught(tmp_path)
+    assert image_loss.looks.any()
+    torch.testing.assert_close(image_loss.teacher.look, image_loss.looks.mean(dim=0))
 
 
 SHOWN = [2 * frame for frame in range(FRAMES)]  # frames of the clip that `material` shows
@@ -204,13 +206,13 @@ def test_poses_are_turned_to_fit_the_pictures(tmp_path: Path) -> None:
     assert 3 < before < 3 * 3**0.5
     shown = material()
     settings = replace(SETTINGS, texture=Schedule(steps=12, batch=6, lr=3e-2, cosine=False), code=0)
-    lesson = Lesson(teacher(settings), shown, settings, refinement=poses)
-    train_teacher(lesson, shown, settings, run=run_in(tmp_path))
+    image_loss = ImageLoss(teacher(settings), shown, settings, refinement=poses)
+    train_teacher(image_loss, shown, settings, run=run_in(tmp_path))
     assert away(poses) < 0.9 * before
 
 
 def test_a_figure_that_stands_beside_its_pictures_is_moved_back() -> None:
-    """By the very distance by which the given poses were off; in the first and last frame, folds look like a part."""
+    """The move equals the error of the given poses; in the first and last frame, folds look like a part of it."""
     clip, skeleton = synthetic_avatar().clips[0], subject().rig.skeleton
     off = torch.tensor([[0.02, -0.01, 0.015], [-0.015, 0.02, 0.01], [0.01, 0.01, -0.02]])
     shifted = torch.from_numpy(clip.translations[WINDOWS]).float()
@@ -218,25 +220,25 @@ def test_a_figure_that_stands_beside_its_pictures_is_moved_back() -> None:
     poses = PoseRefinement(skeleton, torch.from_numpy(clip.rotations[WINDOWS]), shifted, most=4.0)
     shown = material()
     settings = replace(SETTINGS, code=0)
-    lesson = Lesson(teacher(settings), shown, settings, refinement=poses)
+    image_loss = ImageLoss(teacher(settings), shown, settings, refinement=poses)
     with torch.no_grad():
-        lesson.teacher.mean.copy_(looks_of_pictures(lesson.teacher))
+        image_loss.teacher.mean.copy_(looks_of_pictures(image_loss.teacher))
     optimizer = torch.optim.Adam([poses.moves], lr=0.1)
     for _ in range(30):
         optimizer.zero_grad()
-        lesson(torch.arange(FRAMES * CAMERAS), torch.zeros(FRAMES * CAMERAS, 3)).backward()
+        image_loss(torch.arange(FRAMES * CAMERAS), torch.zeros(FRAMES * CAMERAS, 3)).backward()
         optimizer.step()
     left = off + torch.tanh(poses.moves.detach()) * poses.farthest
     share = left.norm(dim=1) / off.norm(dim=1)
     assert share[1] < 0.1
     assert (share < 0.6).all()
     with torch.no_grad():
-        window = lesson.window(0)
+        window = image_loss.window(0)
         torch.testing.assert_close(window.root, motion()[0].root + left[0], rtol=0, atol=1e-5)
 
 
 def test_a_refined_window_is_that_of_the_refined_poses() -> None:
-    """The root's heading too: it is taken back by the networks that say of folds."""
+    """The root's heading too, which the networks of folds remove."""
     clip, own = synthetic_avatar().clips[0], subject()
     poses = refinement(3.0, [[0] * 3, [2, 1, 0], [4, 3, 2]])
     skeleton = own.rig.skeleton
@@ -253,7 +255,7 @@ def test_a_refined_window_is_that_of_the_refined_poses() -> None:
     settings = replace(SETTINGS, code=0)
     shown = material()
     with torch.no_grad():
-        found = Lesson(teacher(settings), shown, settings, refinement=poses).window(2)
+        found = ImageLoss(teacher(settings), shown, settings, refinement=poses).window(2)
     tolerance = 60 * float(np.finfo(np.float32).eps)
     for name in ("joints", "root", "back"):
         torch.testing.assert_close(getattr(found, name), getattr(wanted, name), rtol=0, atol=tolerance)
@@ -297,11 +299,11 @@ def test_a_batch_shows_two_views_of_a_frame() -> None:
     assert (len(frames), times.tolist()) == (4, [2] * 4)
 
 
-def test_all_that_is_learnt_beside_the_mean_texture_has_a_rate() -> None:
+def test_all_that_is_trained_beside_the_mean_texture_has_a_rate() -> None:
     shown = material()
-    lesson = Lesson(teacher(), shown, SETTINGS, refinement=refinement(3.0))
-    rates = {id(parameter): rate for learnt, rate in _rates(lesson) for parameter in learnt}
-    wanted = {name: id(parameter) for name, parameter in lesson.named_parameters() if name != "teacher.mean"}
+    image_loss = ImageLoss(teacher(), shown, SETTINGS, refinement=refinement(3.0))
+    rates = {id(parameter): rate for parameters, rate in _rates(image_loss) for parameter in parameters}
+    wanted = {name: id(parameter) for name, parameter in image_loss.named_parameters() if name != "teacher.mean"}
     assert set(rates) == set(wanted.values())
     assert rates[wanted["teacher.still"]] == 60 * rates[wanted["looks"]] == 60 * rates[wanted["refinement.turns"]]
 
@@ -309,8 +311,8 @@ def test_all_that_is_learnt_beside_the_mean_texture_has_a_rate() -> None:
 @torch.no_grad()
 def test_a_picture_of_the_empty_set_takes_the_place_of_a_drawn_background() -> None:
     def losses(shown: Material) -> list[float]:
-        lesson = Lesson(teacher(), shown, SETTINGS)
-        return [float(lesson(torch.tensor([0]), torch.full((1, 3), light))) for light in (0.0, 0.7)]
+        image_loss = ImageLoss(teacher(), shown, SETTINGS)
+        return [float(image_loss(torch.tensor([0]), torch.full((1, 3), light))) for light in (0.0, 0.7)]
 
     def before_grey(seen: Seen, camera: int) -> Seen:
         return replace(seen, background=torch.full_like(seen.image, 0.7))
@@ -320,26 +322,28 @@ def test_a_picture_of_the_empty_set_takes_the_place_of_a_drawn_background() -> N
     assert drawn[0] != pytest.approx(drawn[1], rel=1e-3)
 
 
-def test_a_frame_learns_its_own_look_alone() -> None:
-    lesson = Lesson(teacher(), material(), SETTINGS)
+def test_a_frame_trains_its_own_look_alone() -> None:
+    image_loss = ImageLoss(teacher(), material(), SETTINGS)
     with torch.no_grad():
-        for parameter in lesson.teacher.nets.parameters():
+        for parameter in image_loss.teacher.nets.parameters():
             parameter.add_(0.1 * torch.randn(parameter.shape, generator=torch.Generator().manual_seed(2)))
-    lesson(torch.tensor([CAMERAS]), torch.ones(1, 3)).backward()
-    assert lesson.looks.grad is not None
-    assert lesson.looks.grad[1].any()
-    assert not lesson.looks.grad[[0, 2]].any()
+    image_loss(torch.tensor([CAMERAS]), torch.ones(1, 3)).backward()
+    assert image_loss.looks.grad is not None
+    assert image_loss.looks.grad[1].any()
+    assert not image_loss.looks.grad[[0, 2]].any()
 
 
 def test_what_is_added_to_colours_costs_nothing_of_itself() -> None:
     """Only what moves or reshapes splats is held near nothing."""
-    lesson = Lesson(teacher(), material(), replace(SETTINGS, weights=LossWeights(l1=0, ssim=0, alpha=0, residual=1)))
-    last = lesson.teacher.nets.appearance.last.bias
+    image_loss = ImageLoss(
+        teacher(), material(), replace(SETTINGS, weights=LossWeights(l1=0, ssim=0, alpha=0, residual=1))
+    )
+    last = image_loss.teacher.nets.appearance.last.bias
     with torch.no_grad():
         last.fill_(0.5)  # type: ignore[union-attr]
-        assert float(lesson(torch.tensor([0]), torch.ones(1, 3))) == 0
-        lesson.teacher.nets.geometry.last.bias.fill_(0.5)  # type: ignore[union-attr]
-        assert float(lesson(torch.tensor([0]), torch.ones(1, 3))) == pytest.approx(0.25, rel=0.01)
+        assert float(image_loss(torch.tensor([0]), torch.ones(1, 3))) == 0
+        image_loss.teacher.nets.geometry.last.bias.fill_(0.5)  # type: ignore[union-attr]
+        assert float(image_loss(torch.tensor([0]), torch.ones(1, 3))) == pytest.approx(0.25, rel=0.01)
 
 
 @torch.no_grad()
