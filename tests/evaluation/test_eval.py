@@ -3,6 +3,7 @@
 import csv
 import json
 import math
+import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -10,11 +11,14 @@ from typing import Any
 import numpy as np
 import pytest
 import torch
+from commands import Commands
 from PIL import Image
 from recordings import clip
 from synthetic_avatar import synthetic_avatar, synthetic_rig
 from torch import Tensor
 
+import mua
+from mua import extras
 from mua.arrays import Array
 from mua.asset.write import write
 from mua.cli import eval as command
@@ -38,6 +42,7 @@ from mua_research.system import Budget, Motion, Sizes, TrainingFrames
 
 SIZE = 176
 SAME = 2 / 255  # of an image of 0..1: the recording's half precision, and the order of equal depths
+PROJECT = Path(mua.__file__).parents[1]
 GOOD, BAD = "ours", "linear"  # what stands in for them
 LEAST_PSNR = 50.0  # dB, beside the CPU rasteriser, as tests/parity
 
@@ -296,6 +301,7 @@ def test_every_option_of_the_images_counts(
     recording: Recording, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("mua.cli.evaluation.Lpips", Weighed)
+    monkeypatch.setitem(sys.modules, "mua_research", None)  # only systems need it
     (tmp_path / "weights").write_text("0.25")
     command.evaluate(
         recording=recording.directory, avatars=[saved(tmp_path)], frames=2, views=3, size=SIZE, own_mesh=True,
@@ -346,4 +352,18 @@ def test_a_trained_system_is_not_trained_again(
 def test_an_unknown_system_is_named(recording: Recording, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="--system nerf: expected one of all, pca-only, "):
         command.evaluate(recording=recording.directory, system=["nerf"], output=tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("beside", ["checkout", "wheel"])
+def test_a_system_without_the_package_that_trains_it_names_what_to_install(
+    beside: str, written: Path, tmp_path: Path, command: Commands, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    if beside == "wheel":
+        monkeypatch.setattr(extras, "__file__", str(tmp_path / "mua" / "extras.py"))
+    monkeypatch.setitem(sys.modules, "mua_research", None)
+    sentence = command("eval", written, "--system", "ours", "-o", tmp_path / "out").sentence
+    assert "--system ours: needs the Python package mua_research, which is not here: " in sentence
+    named = {"checkout": f'install -e "{PROJECT}/research"', "wheel": "pip install -e python/research in a checkout"}
+    assert named[beside] in sentence
     assert not (tmp_path / "out").exists()

@@ -2,6 +2,7 @@
 
 import csv
 import json
+import sys
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -120,6 +121,7 @@ def test_tables_have_a_row_for_each_entry_and_a_dash_for_what_is_not_there() -> 
 def test_the_command_compares_a_teacher_with_the_pictures(
     capture: Path, teacher: Path, tmp_path: Path, command: Commands, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setitem(sys.modules, "mua_research", None)  # only systems need it
     monkeypatch.setattr("mua.cli.filmed_evaluation.Lpips", lambda path: lambda image, truth: float(path.read_text()))
     (tmp_path / "weights").write_text("0.25")
     given: tuple[str | Path, ...] = ("--teacher", teacher, "--frames", "1", "--lpips-weights", tmp_path / "weights")
