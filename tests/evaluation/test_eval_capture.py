@@ -277,9 +277,10 @@ def test_systems_of_a_recording_are_trained_on_it(written: Path, command: Comman
 
 
 def test_a_recording_of_another_character_is_refused(
-    capture: Path, teacher: Path, written: Path, command: Commands
+    capture: Path, teacher: Path, written: Path, tmp_path: Path, command: Commands
 ) -> None:
-    ended = command("eval", capture, "--teacher", teacher, "--system", "ours", "--train-on", written)
+    given = ("--teacher", teacher, "--system", "ours", "--train-on", written, "-o", tmp_path)
+    ended = command("eval", capture, *given)
     assert f"--train-on {written}: its joints are not those of the capture's template" in ended.sentence
 
 
