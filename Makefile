@@ -85,7 +85,7 @@ $(VENV)/.demo: python/pyproject.toml tools/setup.sh
 	PYTHON=$(PYTHON) sh tools/setup.sh $(VENV) demo
 	touch $@
 
-$(VENV)/.installed: python/pyproject.toml tools/setup.sh
+$(VENV)/.installed: python/pyproject.toml python/research/pyproject.toml tools/setup.sh
 	PYTHON=$(PYTHON) sh tools/setup.sh $(VENV) test
 	touch $(VENV)/.demo $@
 

@@ -23,9 +23,9 @@ if TYPE_CHECKING:
     from trainings import Training
 
     from mua.capture import Capture
-    from mua.compare.system import TrainingFrames
     from mua.gpu import Device
     from mua.recording import Recording
+    from mua_research.system import TrainingFrames
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: pytest.Config) -> None:

@@ -52,8 +52,8 @@ done
 case "$missing" in *python3-venv*) exit 1 ;; esac
 
 case "$purpose" in
-demo) extras=bake,view size="1.8 GB" ;;
-*) extras=dev size="2.4 GB" ;;
+demo) extras=bake,view size="1.8 GB" research="" ;;
+*) extras=dev size="2.4 GB" research="-e ./python/research" ;;
 esac
 echo "Installing Python packages into $venv: $size, of which torch is 0.7 GB"
 [ -x "$venv/bin/python" ] || "$python" -m venv "$venv"
@@ -66,4 +66,4 @@ command -v nvidia-smi >/dev/null ||
     $pip --retries 1 --no-deps --index-url https://download.pytorch.org/whl/cpu $torch || true
 $pip $torch "setuptools>=77"
 echo "2 of 2: MUA and all others"
-$pip -e "./python[$extras]"
+$pip -e "./python[$extras]" $research

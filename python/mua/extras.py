@@ -3,7 +3,10 @@
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from importlib.util import find_spec
 from pathlib import Path
+
+from mua.errors import InputError
 
 # The extras of python/pyproject.toml, by the names under which their packages are imported.
 READING = ("DracoPy", "meshoptimizer", "pygltflib", "pywt", "scipy", "xatlas")
@@ -26,6 +29,7 @@ OF_COMMAND = {  # where the extra is not called as the command or the function
     "mua.TeacherWriter": "train",
     "mua.load_rig": "bake",
 }
+RESEARCH, IN_A_CHECKOUT = "mua_research", "pip install -e python/research in a checkout of MUA's repository"
 
 
 def missing_package(command: str, module: str) -> str | None:
@@ -41,12 +45,24 @@ def missing_package(command: str, module: str) -> str | None:
     return f"{command} needs the Python package {package}, which is not here: {_install(','.join(wanted))}"
 
 
+def require_research(option: str) -> None:
+    """Raises InputError where the package of a checkout that trains other systems than ours is not installed."""
+    if find_spec(RESEARCH) is None:
+        checkout = _checkout()
+        install = f'{sys.executable} -m pip install -e "{checkout}/research"' if checkout else IN_A_CHECKOUT
+        raise InputError(f"{option}: needs the Python package {RESEARCH}, which is not here: {install}")
+
+
 def _install(extras: str) -> str:
     """The command that installs extras: of the checkout that this runs from, where it does, by the same Python."""
-    checkout = Path(__file__).resolve().parents[1]
-    if (checkout / "pyproject.toml").is_file():
-        return f'{sys.executable} -m pip install -e "{checkout}[{extras}]"'
-    return f'pip install "mua[{extras}]"'
+    checkout = _checkout()
+    return f'{sys.executable} -m pip install -e "{checkout}[{extras}]"' if checkout else f'pip install "mua[{extras}]"'
+
+
+def _checkout() -> Path | None:
+    """The folder of the package's project, where this runs from a checkout."""
+    folder = Path(__file__).resolve().parents[1]
+    return folder if (folder / "pyproject.toml").is_file() else None
 
 
 @contextmanager

@@ -17,9 +17,9 @@ from mua.avatar.decode import Splats
 from mua.baking.evaluate import TRAINING, Errors
 from mua.baking.order import Order
 from mua.baking.pipeline import Baked, bake
-from mua.compare.entries import avatar_entries
-from mua.compare.images import Studio
-from mua.compare.scores import choose_frames, score
+from mua.evaluation.entries import avatar_entries
+from mua.evaluation.images import Studio
+from mua.evaluation.scores import choose_frames, score
 from mua.gpu import Device
 from mua.player.buffers import AvatarBuffers
 from mua.player.frame import AvatarFrame

@@ -13,10 +13,10 @@ from synthetic_avatar import synthetic_avatar
 from mua.baking import recorded as recordings
 from mua.baking.order import Order
 from mua.baking.recorded import recorded, recording_key
-from mua.cli import filmed_evaluation
 from mua.pose.clip import Stretches
 from mua.recording import PlannedClip
 from mua.student.settings import preset
+from mua_research import filmed_training
 
 CLIP = synthetic_avatar().clips[0]
 PLANNED = PlannedClip(CLIP, held_out=False, wanted=frozenset({0, 2, 3}), whole=None)
@@ -85,11 +85,11 @@ def test_whatever_else_it_would_be_made_of_has_another_key(monkeypatch: pytest.M
 
 def test_a_capture_at_another_rate_is_recorded_anew(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Its poses may be the same."""
-    monkeypatch.setattr(filmed_evaluation, "record_by_workers", lambda *_, **__: None)
-    monkeypatch.setattr(filmed_evaluation, "Recording", lambda directory: directory)
-    monkeypatch.setattr(filmed_evaluation, "teacher_bytes", lambda _: [b"teacher"])
-    monkeypatch.setattr(filmed_evaluation, "plan_headings", lambda *_, **__: [PLANNED])
+    monkeypatch.setattr(filmed_training, "record_by_workers", lambda *_, **__: None)
+    monkeypatch.setattr(filmed_training, "Recording", lambda directory: directory)
+    monkeypatch.setattr(filmed_training, "teacher_bytes", lambda _: [b"teacher"])
+    monkeypatch.setattr(filmed_training, "plan_headings", lambda *_, **__: [PLANNED])
     surfaces = SimpleNamespace(skeleton=None)
     captures = [SimpleNamespace(clips=(), rate=rate, surfaces=surfaces) for rate in (25.0, 30.0, 25.0)]
-    made = {filmed_evaluation._record(tmp_path, one, 9, tmp_path, Told()) for one in captures}  # type: ignore[arg-type]
+    made = {filmed_training._record(tmp_path, one, 9, tmp_path, Told()) for one in captures}  # type: ignore[arg-type]
     assert len(made) == 2

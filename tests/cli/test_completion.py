@@ -3,9 +3,9 @@
 import pytest
 from commands import process
 
-from mua.compare.order import SYSTEM_NAMES
-from mua.compare.systems import SYSTEMS
+from mua.evaluation.order import SYSTEM_NAMES
 from mua.student.settings import PRESETS, RECIPES
+from mua_research.systems import SYSTEMS
 
 
 def completed(name: str, words: str) -> list[str]:

@@ -21,9 +21,9 @@ PACKAGE = Path(mua.__file__).parent
 PROJECT = tomllib.loads((ROOT / "python" / "pyproject.toml").read_text())["project"]
 COMMANDS = [name.removeprefix("mua-") for name in PROJECT["scripts"]]
 CALLED = {"PIL": "pillow", "pxr": "usd-core", "pywt": "pywavelets", "warp": "warp-lang"}  # distributions of packages
-FEW_USE = {  # by extra: what is in USD files; videos of captures, a perceptual term and a rasteriser for CUDA
+FEW_USE = {  # by extra: USD files; videos of captures, a perceptual term, a rasteriser for CUDA; other systems
     "view": {"pxr"},
-    "eval": {"pxr", "gsplat"},
+    "eval": {"pxr", "gsplat", "mua-research"},
     "bake": {"imageio_ffmpeg", "torchmetrics", "gsplat"},
     "teach": {"gsplat"},
 }

@@ -48,13 +48,14 @@ def test_the_demo_installs_nothing_of_the_tests(tmp_path: Path) -> None:
     assert debian_packages(calls) == {"g++", "mesa-vulkan-drivers"}
     assert "./python[bake,view]" in calls
     assert "dev]" not in calls
+    assert "research" not in calls
 
 
 def test_the_tests_get_what_they_need(tmp_path: Path) -> None:
     status, calls, errors = set_up("test", tmp_path)
     assert (status, errors) == (0, "")
     assert debian_packages(calls) > OF_TESTS
-    assert "./python[dev]" in calls
+    assert "./python[dev] -e ./python/research" in calls
 
 
 def test_an_old_python_is_a_sentence(tmp_path: Path) -> None:

@@ -18,15 +18,15 @@ import torch
 import mua.cli  # noqa: F401 first of all: it sets how torch's threads wait
 from mua.baking.evaluate import Errors, Picture
 from mua.channels import ATTRIBUTES
-from mua.compare.motion import motion_of, training_frames
-from mua.compare.network import NetworkSystem
-from mua.compare.system import Budget, TrainingFrames
-from mua.compare.systems import SYSTEMS
 from mua.files.write import replacing
 from mua.recording import Recording
 from mua.student.settings import preset
 from mua.training.checkpoint import Checkpoints, run_key
 from mua.training.optimise import Run
+from mua_research.motion import motion_of, training_frames
+from mua_research.network import NetworkSystem
+from mua_research.system import Budget, TrainingFrames
+from mua_research.systems import SYSTEMS
 
 BATCH = 16  # frames
 KINDS = {"training": False, "held-out": True}

@@ -3,8 +3,7 @@
 python tools/research/measure_template.py White_F_3_Casual.glb --motion cmu/ --held-out 02_02 --held-out 02_09
 
 Distances are those of points all over the template from the true surface, and of its vertices from where the simulation
-moved the same vertices: mean / 95 %, millimetres. `--networks mlp` takes an MLP without
-locality in place of each graph network, `--seen vertices` tells the training where vertices are in place of surfaces.
+moved the same vertices: mean / 95 %, millimetres.
 """
 
 import argparse
@@ -17,7 +16,7 @@ import numpy as np
 import torch
 from PIL import Image
 from template_pictures import picture_of
-from torch import Tensor, nn
+from torch import Tensor
 
 import mua.cli  # noqa: F401 first of all: it sets how torch's threads wait
 from mua.arrays import Array
@@ -29,19 +28,16 @@ from mua.rig.build import build_rig
 from mua.rig.character import Character, Mesh
 from mua.rig.moving import moving_joints
 from mua.rig.rig import Rig
-from mua.student.model import build_mlp, linear_layers
 from mua.teachers.simulated.simulated_surface import SimulatedSurface
 from mua.teachers.trained.drivable_template import DrivableTemplate
 from mua.teachers.trained.mesh_losses import Cloud, Samples
 from mua.teachers.trained.motion_deformation import GraphSizes, MotionDeformation
 from mua.teachers.trained.template_training import Observed, TemplateSettings, fit_template, template_of, training_run
-from mua.teachers.trained.track_losses import Tracks
 from mua.training.optimise import Progress
 
 POINTS = 20_000  # of a true surface, in training
 MEASURED = 60_000  # where distances are measured
 COMPARED = 10_000  # points of the template
-HIDDEN = 128  # of the MLP
 LONGEST = 360  # frames of a clip
 
 
@@ -60,7 +56,6 @@ class Seen:
 
     frames: Frames
     mesh: Mesh
-    vertices: Array | None  # [V] the dense vertices that the template's are; None: surfaces alone
 
     @property
     def descriptors(self) -> Tensor:
@@ -72,33 +67,7 @@ class Seen:
 
     def observe(self, frame: int, generator: torch.Generator) -> Observed:
         surface = self.frames.surfaces[frame]
-        if self.vertices is None:
-            return Observed(cloud=Cloud.of(replace(self.mesh, vertices=surface.astype(float)), POINTS))
-        count = len(self.vertices)
-        corners = torch.arange(count)[:, None].expand(-1, 3)
-        points = torch.as_tensor(surface[self.vertices])
-        first = torch.tensor([[1.0, 0, 0]]).expand(count, 3)
-        return Observed(tracks=Tracks(corners, first, points, torch.ones(count)))
-
-
-class GlobalFeatures(nn.Module):
-    """An MLP whose features all nodes share: with a last layer for each vertex, a plain MLP."""
-
-    def __init__(self, inputs: int, nodes: int) -> None:
-        super().__init__()
-        self.mlp = build_mlp(inputs, HIDDEN, HIDDEN)[:-1]
-        self.nodes = nodes
-
-    def forward(self, inputs: Tensor) -> Tensor:
-        return self.mlp(inputs)[:, None].expand(-1, self.nodes, -1)
-
-    @torch.no_grad()
-    def seed(self, generator: torch.Generator) -> None:
-        first = 0.3  # as the student's
-        for layer in linear_layers(self.mlp):
-            layer.weight.normal_(0, first * (2 / layer.in_features) ** 0.5, generator=generator)
-            layer.bias.zero_()
-            first = 1.0
+        return Observed(cloud=Cloud.of(replace(self.mesh, vertices=surface.astype(float)), POINTS))
 
 
 def main() -> None:
@@ -107,8 +76,6 @@ def main() -> None:
     parser.add_argument("--motion", type=Path, action="append", default=[])
     parser.add_argument("--held-out", action="append", default=[], help="name of a clip")
     parser.add_argument("--every", type=int, default=2, help="frames from one that is used to the next")
-    parser.add_argument("--networks", choices=("graph", "mlp"), default="graph")
-    parser.add_argument("--seen", choices=("surface", "vertices"), default="surface")
     parser.add_argument("--nodes", type=int, default=GraphSizes.nodes)
     parser.add_argument("--steps", type=float, default=1.0, help="times the preset's")
     parser.add_argument("--surfaces", type=Path, default=Path(tempfile.gettempdir()) / "mua-surfaces", help="kept here")
@@ -137,7 +104,7 @@ def main() -> None:
         joints = rig.skeleton.skinning(clip.rotations, clip.translations)[rows]
         parts[clip.name] = Frames(torch.tensor(described).float(), torch.tensor(joints).float(), np.load(name))
     learnt = joined([parts[clip.name] for clip in training])
-    seen = Seen(learnt, character.mesh, source if arguments.seen == "vertices" else None)
+    seen = Seen(learnt, character.mesh)
     template, spent = trained(seen, rig, encoding, arguments)
     print(
         f"{character.name}: {len(learnt.joints)} training frames, {len(rig.mesh.vertices)} vertices, {spent:.0f} s CPU"
@@ -169,15 +136,7 @@ def trained(
         replace(one, steps=max(1, int(one.steps * arguments.steps))) for one in (settings.nodes, settings.offsets)
     )
     settings = replace(settings, nodes=of_nodes, offsets=of_offsets)
-    if arguments.networks == "mlp":
-        settings = replace(settings, sizes=replace(settings.sizes, features=HIDDEN))
     template = template_of(rig, encoding, settings)
-    deformation = template.deformation
-    assert isinstance(deformation, MotionDeformation)
-    if arguments.networks == "mlp":
-        nodes = len(deformation.graph.positions)
-        deformation.node_features = GlobalFeatures(encoding.width, nodes)  # type: ignore[assignment]
-        deformation.vertex_features = GlobalFeatures(encoding.width, nodes)  # type: ignore[assignment]
     print("parameters", sum(parameter.numel() for parameter in template.parameters()))
     started = time.process_time()
     with tempfile.TemporaryDirectory() as directory:

@@ -1,5 +1,6 @@
 """mua-eval: compares avatars and the systems of the paper's tables on a recording."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -8,8 +9,9 @@ import typer
 from mua.cli.choice import choice
 from mua.cli.failure import run_command
 from mua.cli.options import lent_by
-from mua.compare.order import ALL, SYSTEM_NAMES, EvaluationOrder
 from mua.errors import InputError
+from mua.evaluation.order import ALL, SYSTEM_NAMES, EvaluationOrder
+from mua.extras import require_research
 from mua.files.inputs import is_capture, require_file, require_recording, require_teacher
 from mua.student.settings import PRESETS, preset
 
@@ -87,6 +89,7 @@ def evaluate(**options: Any) -> None:
     Trained systems are kept in the directory 'work' of the output; the same command does not train them again.
     """
     order = EvaluationOrder(**options)
+    _check_names(order.system)
     filmed = is_capture(order.recording)
     if filmed:
         _check_filmed(order)
@@ -105,6 +108,8 @@ def evaluate(**options: Any) -> None:
     for file in (*order.avatars, *(() if order.lpips_weights is None else (order.lpips_weights,))):
         require_file(file)
     preset(order.preset)
+    if order.system:
+        require_research(f"--system {order.system[0]}")
     if filmed:
         from mua.cli.filmed_evaluation import compare as compare_filmed
 
@@ -116,11 +121,15 @@ def evaluate(**options: Any) -> None:
     compare(order)
 
 
-def _check_filmed(order: EvaluationOrder) -> None:
-    """Raises InputError for what cannot be compared with images."""
-    for name in order.system:
+def _check_names(systems: Sequence[str]) -> None:
+    """Raises InputError for a name that is no system's."""
+    for name in systems:
         if name not in (ALL, *SYSTEM_NAMES):
             raise InputError(f"--system {name}: expected one of {', '.join((ALL, *SYSTEM_NAMES))}")
+
+
+def _check_filmed(order: EvaluationOrder) -> None:
+    """Raises InputError for what cannot be compared with images."""
     if order.system and order.teacher is None:
         raise InputError(f"--system {order.system[0]}: learns from a teacher; give its folder with --teacher")
     if order.scale and not order.system:

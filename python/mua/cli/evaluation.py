@@ -2,27 +2,19 @@
 
 from collections.abc import Sequence
 from contextlib import closing
-from dataclasses import replace
 from pathlib import Path
-
-import torch
 
 from mua.cli.console import printer
 from mua.cli.display import Display
-from mua.compare import entries, plots, report, scores
-from mua.compare.images import Studio
-from mua.compare.motion import training_frames
-from mua.compare.order import ALL, EvaluationOrder
-from mua.compare.system import Budget
 from mua.errors import InputError
+from mua.evaluation import entries, plots, report, scores
+from mua.evaluation.images import Studio
+from mua.evaluation.order import EvaluationOrder
 from mua.files.lock import DirectoryLock
 from mua.files.write import replacing, write_bytes
 from mua.gpu import Device, open_device
 from mua.recording import Recording
 from mua.splatting.perceptual import Lpips
-from mua.student.settings import Settings, preset
-from mua.training.checkpoint import Checkpoints, run_key
-from mua.training.optimise import Progress, Run
 
 
 def compare(order: EvaluationOrder) -> None:
@@ -31,10 +23,6 @@ def compare(order: EvaluationOrder) -> None:
     chosen = scores.choose_frames(recording, order.frames)
     if not chosen:
         raise InputError(f"recording {order.recording}: no frame is kept whole, expected at least one to compare with")
-    names = list(entries.SYSTEMS) if ALL in order.system else list(dict.fromkeys(order.system))
-    entries.check_systems(names)
-    settings = replace(preset(order.preset), texels=recording.rig.texels.size, seed=order.seed)
-    budget = Budget(seconds=order.seconds) if order.steps is None else Budget(steps=order.steps)
     lpips = Lpips(order.lpips_weights) if order.lpips_weights is not None else None
     console = printer()
     output, size = order.output, order.size
@@ -42,9 +30,11 @@ def compare(order: EvaluationOrder) -> None:
         studio = Studio(opened, recording.rig, chosen, views=order.views, size=size)
         rows = [entries.mean_entry(recording)]
         rows += _avatars(opened, order.avatars, recording, size=size, own_mesh=order.own_mesh, display=display)
-        if names:
+        if order.system:
+            from mua_research.recorded_systems import system_entries  # because only a checkout has it
+
             with DirectoryLock(output / "work", name=f"-o {output}"):
-                rows += _systems(names, recording, settings, budget=budget, work=output / "work", display=display)
+                rows += system_entries(order, recording, output / "work", display)
         display.stage("images")
         results = scores.score(studio, chosen, rows, lpips=lpips, progress=display.step)
         setting = report.Setting(
@@ -53,8 +43,8 @@ def compare(order: EvaluationOrder) -> None:
             frames={kind: sum(f.clip.held_out == held for f in chosen) for kind, held in scores.KINDS.items()},
             views=order.views,
             size=size,
-            seconds=budget.seconds,
-            steps=budget.steps,
+            seconds=order.seconds if order.steps is None else None,
+            steps=order.steps,
             preset=order.preset,
             lpips=None if lpips is None else lpips.network,
             covered=sum(s.covered for s in results[0].samples) / max(len(results[0].samples), 1),
@@ -79,29 +69,6 @@ def _avatars(
     for path in paths:
         display.stage(path.name)
         rows += entries.avatar_entries(device, path, recording.rig, size=size, played=own_mesh)
-    return rows
-
-
-def _systems(
-    names: list[str], recording: Recording, settings: Settings, *, budget: Budget, work: Path, display: Display
-) -> list[entries.Entry]:
-    """Train one system after the other; those that the work directory holds are taken from there."""
-    generator = torch.Generator().manual_seed(settings.seed)
-    checkpoints = Checkpoints(work, run_key((settings, recording.fingerprint(), budget.seconds, budget.steps), []))
-    device = torch.device("cuda" if torch.cuda.is_available() else "cpu")
-
-    def step(progress: Progress) -> None:
-        loss = "" if progress.loss is None else f"loss {progress.loss:.4f}"
-        display.step(progress.step, progress.steps, detail=loss)
-
-    display.stage("coarse mesh")
-    frames = training_frames(recording, settings, run=Run(generator, checkpoints, step, device))
-    rows = []
-    for name in names:
-        display.stage(name)
-        rows.append(entries.system_entry(name, recording, frames, budget=budget, checkpoints=checkpoints, report=step))
-        if rows[-1].failure:
-            display.note(f"{name}: {rows[-1].failure}")
     return rows
 
 

@@ -1,0 +1,70 @@
+"""The curve of a comparison with images: PSNR of every system at every size against what it costs."""
+
+import io
+from collections.abc import Callable, Sequence
+
+import matplotlib
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullFormatter
+
+from mua.evaluation.filmed import SPLITS, TEACHER, FilmedEntry, Judged, mean
+from mua.evaluation.order import OURS, SYSTEM_NAMES
+
+DPI = 120
+COSTS: dict[str, Callable[[FilmedEntry], float]] = {
+    "million parameters": lambda entry: (entry.cost.parameters or 0) / 1e6,
+    "million operations a frame": lambda entry: (entry.cost.flops or 0) / 1e6,
+}
+MARKS = "osv^D<>P"
+
+
+def curve(judged: Sequence[Judged], entries: Sequence[FilmedEntry]) -> bytes:
+    """PNG: a row for each split that has views, a column for each cost; a line for each system, dashed the teacher."""
+    splits = [split for split in SPLITS if any(one.shot.split == split for one in judged)]
+    figure = Figure(figsize=(12, 4.5 * len(splits)), layout="constrained")
+    panels = figure.subplots(len(splits), len(COSTS), sharex="col", sharey="row", squeeze=False)
+    for row, split in zip(panels, splits, strict=True):
+        for panel, (unit, cost) in zip(row, COSTS.items(), strict=True):
+            _lines(panel, judged, entries, split=split, cost=cost)
+            panel.set(title=split, xlabel=unit, ylabel="PSNR, dB", xscale="log")
+            panel.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+            panel.xaxis.set_major_formatter("{x:g}")
+            panel.xaxis.set_minor_formatter(NullFormatter())
+            panel.grid(alpha=0.3, which="both")
+    handles, labels = panels[0][0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=5, fontsize=9)
+    stream = io.BytesIO()
+    figure.savefig(stream, format="png", dpi=DPI, metadata={"Software": None})
+    return stream.getvalue()
+
+
+def points(
+    judged: Sequence[Judged],
+    entries: Sequence[FilmedEntry],
+    system: str,
+    split: str,
+    cost: Callable[[FilmedEntry], float],
+) -> list[tuple[float, float]]:
+    """Cost and PSNR of a system's sizes in a split, the cheapest first."""
+    own = [(cost(one), mean(judged, one.name, split)) for one in entries if one.system == system]
+    return sorted((place, scores.psnr) for place, scores in own if scores is not None)
+
+
+def _lines(
+    panel: Axes,
+    judged: Sequence[Judged],
+    entries: Sequence[FilmedEntry],
+    *,
+    split: str,
+    cost: Callable[[FilmedEntry], float],
+) -> None:
+    palette = matplotlib.colormaps["tab10"]
+    for place, name in enumerate(SYSTEM_NAMES):
+        line = points(judged, entries, name, split, cost)
+        if line:
+            width = 2.5 if name == OURS else 1.2
+            panel.plot(*zip(*line, strict=True), f"{MARKS[place]}-", color=palette(place), linewidth=width, label=name)
+    teacher = mean(judged, TEACHER, split) if any(one.name == TEACHER for one in entries) else None
+    if teacher is not None:
+        panel.axhline(teacher.psnr, color="0.3", linestyle="--", linewidth=1, label=TEACHER)

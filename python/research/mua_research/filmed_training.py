@@ -1,0 +1,79 @@
+"""The systems that an order names, trained on what its teacher shows of a capture's training poses."""
+
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+
+from mua.baking.filmed_motion import filmed_clips, plan_headings, taught_settings
+from mua.baking.recorded import recording_key
+from mua.capture import Capture
+from mua.cli.display import Display
+from mua.evaluation.filmed import FilmedEntry, require_skeleton
+from mua.evaluation.order import ALL, SYSTEM_NAMES, EvaluationOrder
+from mua.pose.encoding import RATE
+from mua.recording import Recording
+from mua.recording.workers import record_by_workers
+from mua.student.settings import preset
+from mua.teachers.trained.folder import teacher_bytes
+from mua.teachers.trained.teacher import TrainedTeacher
+from mua_research.filmed_systems import sized, trained_entries
+from mua_research.training import prepare
+
+
+def system_entries(
+    order: EvaluationOrder, capture: Capture, work: Path, display: Display
+) -> tuple[list[FilmedEntry], list[str]]:
+    """The systems at their sizes, and what is said of them.
+
+    Errors: InputError where the recording to train on is of another character than the capture's.
+    """
+    assert order.teacher is not None
+    settings = replace(preset(order.preset), seed=order.seed)
+    if order.train_on is None:
+        recording = _record(order.teacher, capture, settings.frames, work, display)
+    else:
+        recording = Recording(order.train_on)
+        require_skeleton(f"--train-on {order.train_on}", recording.rig.skeleton, capture.surfaces.skeleton)
+    settings = taught_settings(settings, recording.rig.texels.size)
+    training = prepare(order, recording, settings, work, display)
+    names = SYSTEM_NAMES if ALL in order.system else tuple(dict.fromkeys(order.system))
+    failures: list[str] = []
+    trained = trained_entries(
+        sized(names, order.scale or (1.0,), training.frames.sizes),
+        training.frames,
+        budget=training.budget,
+        checkpoints=training.checkpoints,
+        begin=display.stage,
+        report=training.report,
+        failed=failures.append,
+    )
+    entries = list(trained)
+    length = f"{order.seconds:g} s" if order.steps is None else f"{order.steps} steps"
+    said = [
+        f"Systems were trained for {length} each on {len(training.frames)} frames of the teacher at {settings.texels} "
+        f"texels, at sizes relative to preset {order.preset}, and at the largest that cost at most as much as ours.",
+        "M parameters and MFLOP: of what turns a pose into a texture and a mesh; posing and drawing are left out.",
+    ]
+    return entries, [*said, *(f"Failed: {sentence}" for sentence in failures)]
+
+
+def _record(teacher: Path, capture: Capture, frames: int, work: Path, display: Display) -> Recording:
+    """What the teacher shows of the capture's training poses, at most so many."""
+    names = [clip.name for clip in capture.clips if not clip.held_out]
+    own = [clip for clip in filmed_clips(capture) if clip.name in names]
+    planned = plan_headings(capture.surfaces.skeleton, own, [], filmed=names, frames=frames)
+    planned = [replace(clip, whole=frozenset()) for clip in planned]
+    key = recording_key(teacher_bytes(teacher), planned)
+    directory = work / f"recording-{key}"
+    total = sum(len(clip.wanted) for clip in planned)
+    display.stage("recording")
+    record_by_workers(
+        partial(TrainedTeacher, teacher),
+        planned,
+        directory,
+        jobs=1,
+        rate=RATE,
+        progress=lambda done, _: display.step(done, total),
+        note=display.note,
+    )
+    return Recording(directory)

@@ -1,0 +1,68 @@
+"""The systems of the paper's tables as rows of a comparison with a recording."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import torch
+
+from mua.arrays import Array
+from mua.cli.display import Display
+from mua.evaluation.cost import learnt_cost
+from mua.evaluation.entries import Entry, Picture, sentence
+from mua.evaluation.order import ALL, EvaluationOrder
+from mua.recording import Recording, WholeFrame
+from mua.student.settings import preset
+from mua.training.checkpoint import Checkpoints
+from mua.training.optimise import Report
+from mua_research.motion import motion_of
+from mua_research.network import NetworkSystem
+from mua_research.system import Budget, TrainingFrames
+from mua_research.systems import SYSTEMS, train_or_restore
+from mua_research.training import prepare
+
+
+def system_entries(order: EvaluationOrder, recording: Recording, work: Path, display: Display) -> Iterator[Entry]:
+    """Train the systems of an order one after the other; those that the work directory holds are taken from there."""
+    settings = replace(preset(order.preset), texels=recording.rig.texels.size, seed=order.seed)
+    training = prepare(order, recording, settings, work, display)
+    for name in SYSTEMS if ALL in order.system else dict.fromkeys(order.system):
+        display.stage(name)
+        entry = system_entry(
+            name,
+            recording,
+            training.frames,
+            budget=training.budget,
+            checkpoints=training.checkpoints,
+            report=training.report,
+        )
+        if entry.failure:
+            display.note(f"{name}: {entry.failure}")
+        yield entry
+
+
+def system_entry(
+    name: str,
+    recording: Recording,
+    frames: TrainingFrames,
+    *,
+    budget: Budget,
+    checkpoints: Checkpoints,  # of this recording, these sizes and this budget
+    report: Report,
+) -> Entry:
+    """Train the system called `name`, or take up what an earlier run made of it; one that fails becomes a sentence."""
+    try:
+        system = SYSTEMS[name](frames.sizes)
+        train_or_restore(system, frames, stage=f"system {name}", budget=budget, checkpoints=checkpoints, report=report)
+    except Exception as error:  # whatever one system stumbles over, the others go on
+        return Entry(name, None, failure=sentence(error))
+    cost = learnt_cost(system.parameters, system.flops)
+    return Entry(name, lambda frame: Picture(system_texture(system, recording, frames, frame)), cost)
+
+
+def system_texture(system: NetworkSystem, recording: Recording, frames: TrainingFrames, frame: WholeFrame) -> Array:
+    """A trained system's texture [N, 23] of a frame."""
+    motion = motion_of(frame.clip, np.array([frame.index]), rig=recording.rig, student=frames.student)
+    with torch.no_grad():
+        return np.asarray(system.textures(motion)[0].cpu().numpy())
