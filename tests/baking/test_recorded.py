@@ -83,13 +83,16 @@ def test_whatever_else_it_would_be_made_of_has_another_key(monkeypatch: pytest.M
     assert recording_key([b"teacher"], [PLANNED]) not in keys
 
 
-def test_a_capture_at_another_rate_is_recorded_anew(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Its poses may be the same."""
-    monkeypatch.setattr(filmed_training, "record_by_workers", lambda *_, **__: None)
+def test_poses_of_a_capture_are_recorded_at_one_rate_however_often_it_was_filmed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Poses at the rate of the file say all; the images' rate is no part of what is recorded."""
+    rates: list[float] = []
+    monkeypatch.setattr(filmed_training, "record_by_workers", lambda *_, rate, **__: rates.append(rate))
     monkeypatch.setattr(filmed_training, "Recording", lambda directory: directory)
     monkeypatch.setattr(filmed_training, "teacher_bytes", lambda _: [b"teacher"])
     monkeypatch.setattr(filmed_training, "plan_headings", lambda *_, **__: [PLANNED])
     surfaces = SimpleNamespace(skeleton=None)
     captures = [SimpleNamespace(clips=(), rate=rate, surfaces=surfaces) for rate in (25.0, 30.0, 25.0)]
     made = {filmed_training._record(tmp_path, one, 9, tmp_path, Told()) for one in captures}  # type: ignore[arg-type]
-    assert len(made) == 2
+    assert (len(made), rates) == (1, [30.0, 30.0, 30.0])
