@@ -60,7 +60,7 @@
 
   globalThis.headset = headset;
   globalThis.XRGPUBinding = class {
-    constructor(session, gpu) {
+    constructor(_session, gpu) {
       if (!headset.adapters.at(-1)) throw new DOMException("The device does not fit the headset", "InvalidStateError");
       Object.assign(headset, { gpu });
     }

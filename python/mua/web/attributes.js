@@ -24,7 +24,7 @@ const ASKED = {
   show(player, value) {
     if (value === null) return;
     const shown = value.split(",").map((word) => word.trim()).filter(Boolean);
-    const known = /** @type {(keyof typeof SHOWN)[]} */ (Object.keys(SHOWN));
+    const known = /** @type {import("./keys.js").Shown[]} */ (Object.keys(SHOWN));
     const other = shown.find((word) => !known.some((each) => each === word));
     if (other) throw new AvatarError(`show="${value}": "${other}" cannot be shown, only ${known.join(", ")}.`);
     for (const each of known) player.show[each] = shown.includes(each);

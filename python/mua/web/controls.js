@@ -1,12 +1,12 @@
 // The bar, the panel and the sentences of an element: what they ask of it, and what they show of it.
 
 import { levelNamed } from "./attributes.js";
-import { SHOWN } from "./keys.js";
 import { ICONS, MARKUP } from "./markup.js";
 
 const EVERY = 500; // milliseconds between two looks at the times
 
 /** @typedef {import("./element.js").MuaAvatar} MuaAvatar */
+/** @typedef {import("./keys.js").Shown} Shown */
 
 /** The parts of an element. */
 export class Controls {
@@ -73,7 +73,7 @@ export class Controls {
     on(this.again, "click", () => void avatar.reload());
     on(this.close, "click", () => this.hush());
     on(this.times, "toggle", () => this.showTimes(true));
-    for (const box of this.toggles) on(box, "change", () => avatar.toggle(/** @type {keyof typeof SHOWN} */ (box.name)));
+    for (const box of this.toggles) on(box, "change", () => avatar.toggle(/** @type {Shown} */ (box.name)));
     this.panel.addEventListener("keydown", (event) => {
       if (event.key !== "Escape") return;
       this.openPanel(false);
@@ -144,7 +144,7 @@ export class Controls {
     this.play.innerHTML = player.playing ? ICONS.pause : ICONS.play;
     this.play.setAttribute("aria-label", player.playing ? "Pause" : "Play");
     this.speed.value = String(player.speed);
-    for (const box of this.toggles) box.checked = player.show[/** @type {keyof typeof SHOWN} */ (box.name)];
+    for (const box of this.toggles) box.checked = player.show[/** @type {Shown} */ (box.name)];
     this.list(this.clips, player.clips.map(({ name }) => name), player.clip);
     this.stereo.checked = player.stereo;
     this.follow.checked = player.follow;
@@ -206,7 +206,8 @@ export class Controls {
     [this.pictures, this.looked] = [0, performance.now()];
     if (!this.times.open || this.panel.hidden) return;
     const first = this.avatar.firstPicture;
-    this.rate.textContent = `${rate.toFixed(1)} pictures per second` + (first ? `; the first after ${(first / 1000).toFixed(1)} s` : "");
+    const since = first ? `; the first after ${(first / 1000).toFixed(1)} s` : "";
+    this.rate.textContent = `${rate.toFixed(1)} pictures per second${since}`;
     const times = Object.entries(player.milliseconds);
     const sum = times.reduce((all, [, spent]) => all + spent, 0);
     this.stages.replaceChildren(...[...times, ["all stages", sum]].map(([name, spent]) => line(String(name), `${Number(spent).toFixed(2)} ms`)));

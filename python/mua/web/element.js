@@ -26,7 +26,7 @@ import { adopt, ASKABLE, FOLLOWED, levelNamed, missingClip, namesOf, numberOf } 
 import { Controls } from "./controls.js";
 import { acceptFiles } from "./drop.js";
 import { listen } from "./hands.js";
-import { pressed, SHOWN } from "./keys.js";
+import { pressed } from "./keys.js";
 import { Loading } from "./loading.js";
 import { look } from "./look.js";
 import { lessMotion, Loop } from "./loop.js";
@@ -243,7 +243,7 @@ export class MuaAvatar extends Attributed {
   }
 
   /** Show or hide a part of the picture. */
-  toggle(/** @type {keyof typeof SHOWN} */ name) {
+  toggle(/** @type {import("./keys.js").Shown} */ name) {
     const shown = this.show.split(",").filter(Boolean);
     this.show = (shown.includes(name) ? shown.filter((each) => each !== name) : [...shown, name]).join();
   }

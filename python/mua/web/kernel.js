@@ -100,7 +100,8 @@ export class Kernel {
    * @param {Values} constants
    */
   dispatch(pass, groups, buffers, constants) {
-    pass.setPipeline((this.pipeline ??= this.gpu.createComputePipeline(this.described)));
+    this.pipeline ??= this.gpu.createComputePipeline(this.described);
+    pass.setPipeline(this.pipeline);
     pass.setBindGroup(0, this.bindings.group(buffers), this.bindings.offsets(constants));
     pass.dispatchWorkgroups(groups[0], groups[1], groups[2]);
   }
@@ -176,7 +177,8 @@ export class Pipeline {
 
   /** Set the pipeline, its buffers and its constants for the draws that follow in a pass. */
   bind(/** @type {GPURenderPassEncoder} */ pass, /** @type {Buffers} */ buffers, /** @type {Values} */ constants) {
-    pass.setPipeline((this.pipeline ??= this.gpu.createRenderPipeline(this.described)));
+    this.pipeline ??= this.gpu.createRenderPipeline(this.described);
+    pass.setPipeline(this.pipeline);
     for (const [index, stage] of this.stages.entries())
       pass.setBindGroup(index, stage.group(buffers), stage.offsets(constants));
   }

@@ -11,6 +11,8 @@ export const SHOWN = /** @type {const} */ ({
   shadow: "Shadow",
 });
 
+/** @typedef {keyof typeof SHOWN} Shown the name of one of them */
+
 const STEP = 20; // pixels of a drag that an arrow key stands for
 
 /** @type {Record<string, [key: string, does: string, act: (avatar: MuaAvatar) => void]>} by KeyboardEvent.key */
@@ -21,7 +23,7 @@ export const KEYS = {
   ...Object.fromEntries(
     Object.entries(SHOWN).map(([name, label], i) => [
       String(i + 1),
-      [String(i + 1), label, (/** @type {MuaAvatar} */ avatar) => avatar.toggle(/** @type {keyof typeof SHOWN} */ (name))],
+      [String(i + 1), label, (/** @type {MuaAvatar} */ avatar) => avatar.toggle(/** @type {Shown} */ (name))],
     ]),
   ),
   a: ["a", "look at the next avatar", (avatar) => avatar.lookAtNext()],

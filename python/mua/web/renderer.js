@@ -102,6 +102,7 @@ export class Renderer {
       if (lacking || !slot) memory.free();
       if (lacking) {
         this.rearrange(this.slots.filter((one) => one !== slot));
+        // biome-ignore lint/correctness/noUnsafeFinally: too little memory is the cause of whatever failed before
         throw new AvatarError(`${avatar.name}: the graphics device has too little free memory for this avatar.`);
       }
     }

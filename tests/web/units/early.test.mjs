@@ -23,7 +23,7 @@ function deviceWith(keys, { lost = false } = {}) {
       return made;
     },
     createCommandEncoder: () => ({
-      copyBufferToBuffer: (from, first, to, at, size) => (to.content = from.slice(first, first + size)),
+      copyBufferToBuffer: (from, first, to, _at, size) => (to.content = from.slice(first, first + size)),
       finish: () => 0,
     }),
   };

@@ -207,7 +207,7 @@ test("nothing is told of a player that was disposed of", async () => {
 test("an avatar stands on the ground of the clip that it plays, where a shadow is asked for", async () => {
   const higher = { ...avatar.clips[0], name: "higher", translation: avatar.clips[0].translation.map((at) => at + 0.5) };
   const { engine } = await begun();
-  const entry = await engine.put({ ...avatar, clips: [avatar.clips[0], higher] }, null, true);
+  await engine.put({ ...avatar, clips: [avatar.clips[0], higher] }, null, true);
   assert.equal(engine.posed()[0].ground, 0);
   engine.show.shadow = true;
   const [{ ground }] = engine.posed();

@@ -109,7 +109,7 @@ beforeEach(() => {
     createProjectionLayer({ colorFormat }) {
       return { colorFormat };
     }
-    getViewSubImage(layer, { eye }) {
+    getViewSubImage(_layer, { eye }) {
       const colorTexture = { width: 128, height: 168, createView: ({ eye: of }) => `image ${of}` };
       return { colorTexture, viewport: { ...VIEWPORT, x: VIEWPORT.x + eye }, getViewDescriptor: () => ({ eye }) };
     }
