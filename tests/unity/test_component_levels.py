@@ -95,4 +95,4 @@ def test_an_avatar_that_was_far_away_when_others_came_has_room_for_all_its_splat
 
 
 def test_an_avatar_without_splats_takes_nothing_of_the_budget(story: Story) -> None:
-    assert story("SharesBudgetWithMesh", "first", "second")["splats"] == [str(counts(1)[0])]
+    assert story("SharesBudgetWithTemplate", "first", "second")["splats"] == [str(counts(1)[0])]

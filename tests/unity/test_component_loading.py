@@ -109,7 +109,7 @@ def test_one_avatar_takes_the_place_of_another(story: Story) -> None:
 
 
 def test_a_scene_keeps_every_setting_of_a_component(story: Story) -> None:
-    assert story("IsCopied", "first")["copy"] == ["Ready 0.5 Mesh Half False True"]
+    assert story("IsCopied", "first")["copy"] == ["Ready 0.5 Template Half False True"]
 
 
 def test_bytes_load_as_their_file_does(story: Story) -> None:

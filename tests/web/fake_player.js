@@ -29,7 +29,7 @@ class Fake {
   vr = false;
   onvr = null;
   camera = { azimuth: 0, elevation: 0, distance: 3, target: [0, 1, 0], fov: 0.8 };
-  show = { splats: true, geometry: true, mesh: false, skeleton: false, shadow: false };
+  show = { splats: true, geometry: true, template: false, skeleton: false, shadow: false };
   milliseconds = { decode: 1.25, sort: 0.5 };
   adapter = "fake adapter (software)";
   onerror = null;

@@ -4,6 +4,7 @@ import base64
 import io
 import json
 from collections.abc import Callable, Iterator
+from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
@@ -118,9 +119,7 @@ def camera_of(page: Page, screen: tuple[int, int] = SCREEN) -> Camera:
 
 
 def show(page: Page, toggles: Toggles, frame: int, rate: float) -> None:
-    names = {"splats": "splats", "geometry": "geometry", "template": "mesh", "skeleton": "skeleton", "shadow": "shadow"}
-    shown = {web: getattr(toggles, name) for name, web in names.items()}
-    page.evaluate(f"Object.assign(player.show, {json.dumps(shown)})")
+    page.evaluate(f"Object.assign(player.show, {json.dumps(asdict(toggles))})")
     page.evaluate(f"player.time = {frame / rate}")
 
 

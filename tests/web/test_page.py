@@ -67,10 +67,10 @@ def test_the_camera_orbits_where_that_is_asked_for(opened: Open) -> None:
 
 
 def test_attributes_say_what_is_shown_and_from_where(opened: Open) -> None:
-    given = {"clip": "wave", "speed": "0.5", "show": "mesh,skeleton", "azimuth": "90", "elevation": "-30"}
+    given = {"clip": "wave", "speed": "0.5", "show": "template,skeleton", "azimuth": "90", "elevation": "-30"}
     page = opened({"src": "hero.muaavatar", **given})
     assert page.evaluate("[fake.clip, fake.speed]") == ["wave", 0.5]
-    assert page.evaluate("Object.keys(fake.show).filter((name) => fake.show[name])") == ["mesh", "skeleton"]
+    assert page.evaluate("Object.keys(fake.show).filter((name) => fake.show[name])") == ["template", "skeleton"]
     assert page.evaluate("[fake.camera.azimuth, fake.camera.elevation]") == pytest.approx([1.5708, -0.5236], abs=1e-4)
 
 

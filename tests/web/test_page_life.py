@@ -92,13 +92,13 @@ def test_a_paused_element_of_another_size_is_drawn_again(opened: Open) -> None:
 
 def test_attributes_count_also_while_an_avatar_loads(opened: Open) -> None:
     page = opened({"src": "hero.muaavatar"}, until=f"{SENTENCE} === 'Loading half of it'", before=HOLD)
-    asked = {"clip": "wave", "speed": "2", "level": "384", "show": "mesh"}
+    asked = {"clip": "wave", "speed": "2", "level": "384", "show": "template"}
     for name, value in asked.items():
         page.evaluate(f"{ELEMENT}.setAttribute('{name}', '{value}')")
     page.evaluate("go()")
     page.wait(LOADED)
     page.evaluate(SETTLED)
-    assert page.evaluate("[fake.clip, fake.speed, fake.level, fake.show.mesh, fake.show.splats]") == [
+    assert page.evaluate("[fake.clip, fake.speed, fake.level, fake.show.template, fake.show.splats]") == [
         *("wave", 2, 384),
         *(True, False),
     ]

@@ -15,7 +15,7 @@ GIVEN = {
     "src": "hero.muaavatar",
     "clip": "wave",
     "speed": 0.5,
-    "show": "mesh",
+    "show": "template",
     "level": 384,
     "budget": 5000,
     "stereo": True,
@@ -28,7 +28,7 @@ GIVEN = {
     "poster": "icon.svg",
     "alt": "A dancer",
 }
-PLAYED = "[fake.clip, fake.speed, fake.show.mesh, fake.show.splats, fake.level, fake.budget, fake.stereo, fake.follow]"
+PLAYED = "[fake.clip, fake.speed, fake.show.template, fake.show.splats, fake.level, fake.budget, fake.stereo, fake.follow]"
 WANTED = ["wave", 0.5, True, False, 384, 5000, True, True]
 
 
@@ -106,10 +106,10 @@ def test_what_cannot_be_shown_is_said_and_the_picture_stays(opened: Open) -> Non
       document.querySelector("mua-avatar").addEventListener("error", ({ detail }) => told.push(detail.message));
     })"""
     page = opened({"src": "hero.muaavatar", "show": "splat"}, before=listen)
-    said = 'show="splat": "splat" cannot be shown, only splats, geometry, mesh, skeleton, shadow.'
+    said = 'show="splat": "splat" cannot be shown, only splats, geometry, template, skeleton, shadow.'
     assert page.evaluate(f"[fake.show.splats, told, {SENTENCE}]") == [True, [said], said]
-    page.evaluate(f"{ELEMENT}.show = 'mesh'")
-    assert page.evaluate("[fake.show.splats, fake.show.mesh]") == [False, True]
+    page.evaluate(f"{ELEMENT}.show = 'template'")
+    assert page.evaluate("[fake.show.splats, fake.show.template]") == [False, True]
 
 
 @pytest.mark.parametrize(

@@ -209,7 +209,7 @@ def show(page: Page, url: str, until: str) -> None:
     page.wait(f"{ELEMENT}.firstPicture > 0 && {ELEMENT}.avatars.length === 1 && {until}")
 
 
-@pytest.mark.parametrize(("stage", "splats"), [(0, False), (1, True)], ids=["mesh", "coarse splats"])
+@pytest.mark.parametrize(("stage", "splats"), [(0, False), (1, True)], ids=["template", "coarse splats"])
 def test_the_first_half_of_a_file_is_a_picture(
     page: Page, halves: tuple[Give, Event], packed: bytes, stage: int, splats: bool
 ) -> None:
@@ -234,7 +234,7 @@ def test_the_first_half_of_a_file_is_a_picture(
     assert seen(page) > 0
 
 
-def test_a_mesh_does_not_take_the_place_of_a_poster(page: Page, halves: tuple[Give, Event], packed: bytes) -> None:
+def test_a_template_does_not_take_the_place_of_a_poster(page: Page, halves: tuple[Give, Event], packed: bytes) -> None:
     give, rest = halves
     end = int(parse_checked(packed)["stages"][0])
     page.evaluate(f"{ELEMENT}.setAttribute('poster', 'icon.svg')")

@@ -16,13 +16,13 @@ namespace Mua
         /// <summary>The surface through the splats' centres, shaded.</summary>
         Geometry = 2,
 
-        /// <summary>The coarse template mesh, shaded.</summary>
-        Mesh = 4,
+        /// <summary>The template, the coarse mesh that the joints move, shaded.</summary>
+        Template = 4,
 
         /// <summary>The bones.</summary>
         Skeleton = 8,
 
-        /// <summary>The shadow of the template mesh on other objects.</summary>
+        /// <summary>The shadow of the template on other objects.</summary>
         Shadow = 16,
     }
 
@@ -81,7 +81,7 @@ namespace Mua
         [SerializeField, Tooltip("Playback speed; 1 plays the clip at its recorded speed.")]
         private float speed = 1;
 
-        [SerializeField, Tooltip("What is drawn: splats, their surface as geometry, the coarse mesh, its bones, its shadow.")]
+        [SerializeField, Tooltip("What is drawn: splats, their surface as geometry, the template (the coarse mesh), its bones, its shadow.")]
         private AvatarViews views = AvatarViews.Splats | AvatarViews.Shadow;
 
         [SerializeField]

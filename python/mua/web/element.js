@@ -7,7 +7,7 @@
 //   poster      picture until the avatar is drawn
 //   alt         what is seen, for those who do not see it; the names of the avatars if left out
 //   speed       playback speed; 1 plays at the recorded speed
-//   show        what is drawn, separated by commas: splats, geometry, mesh, skeleton, shadow
+//   show        what is drawn, separated by commas: splats, geometry, template, skeleton, shadow
 //   level       of detail: auto (by the distance, if left out), full, or texels along a side of the texture
 //   budget      most splats of all avatars together where level is auto
 //   stereo      draws a left and a right eye side by side
@@ -39,7 +39,7 @@ import { Stage } from "./stage.js";
 /** @typedef {import("./loading.js").Source} Source */
 
 const SHARPEST = 2; // device pixels of a CSS pixel that are drawn: more cost much and show little
-const FIRST = { splats: true, geometry: false, mesh: false, skeleton: false, shadow: true }; // what is shown where nothing is asked for
+const FIRST = { splats: true, geometry: false, template: false, skeleton: false, shadow: true }; // what is shown where nothing is asked for
 
 export class MuaAvatar extends Attributed {
   static observedAttributes = FOLLOWED;
@@ -143,7 +143,7 @@ export class MuaAvatar extends Attributed {
     this.reflect("speed", speed);
   }
 
-  /** What is drawn, separated by commas: splats, geometry, mesh, skeleton, shadow. @type {string} */
+  /** What is drawn, separated by commas: splats, geometry, template, skeleton, shadow. @type {string} */
   get show() {
     return this.player ? namesOf(this.player.show) : (this.getAttribute("show") ?? namesOf(FIRST));
   }

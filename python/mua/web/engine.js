@@ -39,7 +39,7 @@ export class Engine {
     /** @type {import("./player.js").CameraState} */
     this.camera = { azimuth: 0, elevation: 0, distance: 3.5, target: [0, 1, 0], fov: FOV };
     /** @type {import("./player.js").Show} */
-    this.show = { splats: true, geometry: false, mesh: false, skeleton: false, shadow: true };
+    this.show = { splats: true, geometry: false, template: false, skeleton: false, shadow: true };
     /** @type {import("./player.js").Level} */
     this.level = "auto";
     /** @type {number | null} */

@@ -6,7 +6,7 @@
 export const SHOWN = /** @type {const} */ ({
   splats: "Splats",
   geometry: "Detailed geometry",
-  mesh: "Template mesh",
+  template: "Template mesh",
   skeleton: "Skeleton",
   shadow: "Shadow",
 });

@@ -86,7 +86,7 @@ export class Loading {
     const address = typeof source === "string" ? new URL(source, document.baseURI).href : source;
     let begun = false; // with a part of it
     const onPart = async (/** @type {AvatarHandle} */ part) => {
-      if (run !== this.#run || (!part.splats && !controls.poster.hidden)) return; // a poster shows more than a mesh
+      if (run !== this.#run || (!part.splats && !controls.poster.hidden)) return; // a poster shows more than a template
       const first = !begun;
       begun = true;
       await this.asks.show(first);

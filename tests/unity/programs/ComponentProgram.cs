@@ -74,7 +74,7 @@ namespace Mua
             AvatarRenderer first = Show(files[0]), second = Show(files[1]);
             Frames(2);
             Say("both", AvatarWorld.Current.SplatCount);
-            second.Views = AvatarViews.Mesh;
+            second.Views = AvatarViews.Template;
             Frames(2);
             Say("one", AvatarWorld.Current.SplatCount);
             int alive = Recorder.AliveCount;

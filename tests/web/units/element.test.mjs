@@ -136,13 +136,13 @@ test("what is asked before an avatar is there is done once it is", async () => {
 });
 
 test("attributes that are there when an avatar comes count", async () => {
-  const given = { clip: "wave", speed: "0.5", level: "32", budget: "900", stereo: "", follow: "", show: "mesh", azimuth: "90", elevation: "-45" };
+  const given = { clip: "wave", speed: "0.5", level: "32", budget: "900", stereo: "", follow: "", show: "template", azimuth: "90", elevation: "-45" };
   const { element, player } = await begun({ src: "a", ...given });
   const { clip, speed, level, budget, stereo, follow, show } = player;
   assert.deepEqual({ clip, speed, level, budget, stereo, follow }, { clip: "wave", speed: 0.5, level: 32, budget: 900, stereo: true, follow: true });
-  assert.deepEqual(Object.keys(show).filter((name) => show[name]), ["mesh"]);
+  assert.deepEqual(Object.keys(show).filter((name) => show[name]), ["template"]);
   assert.deepEqual([player.camera.azimuth, player.camera.elevation], [Math.PI / 2, -Math.PI / 4]);
-  assert.deepEqual([element.clip, element.speed, element.level, element.show], ["wave", 0.5, 32, "mesh"]);
+  assert.deepEqual([element.clip, element.speed, element.level, element.show], ["wave", 0.5, 32, "template"]);
 });
 
 test("attributes that change later count at once and are drawn", async () => {
@@ -261,7 +261,7 @@ test("keys do what the panel says", async () => {
     ["ArrowRight", () => Math.round(10 * player.time), 0],
     ["1", () => player.show.splats, false],
     ["2", () => player.show.geometry, true],
-    ["3", () => player.show.mesh, true],
+    ["3", () => player.show.template, true],
     ["4", () => player.show.skeleton, true],
     ["5", () => player.show.shadow, false],
     ["a", () => player.framed.at(-1)[0].name, "a"],
@@ -319,9 +319,9 @@ test("the controls do what they say", async () => {
   change(".stereo");
   change(".follow");
   assert.deepEqual([player.clip, player.speed, player.level, player.stereo, player.follow], ["wave", 0.5, 32, true, true]);
-  const mesh = element.toggles.find(({ name }) => name === "mesh");
-  mesh.dispatchEvent(new Event("change"));
-  assert.equal(player.show.mesh, true);
+  const template = element.toggles.find(({ name }) => name === "template");
+  template.dispatchEvent(new Event("change"));
+  assert.equal(player.show.template, true);
   part(".reset").click();
   assert.equal(player.framed.length, 2);
 });

@@ -81,7 +81,7 @@ test("a picture that would be the same is not drawn again; what changes in it is
     () => (engine.avatars[0].place = [1, 0, 0]),
     () => (engine.avatars[0].place[2] = 3),
     () => (engine.time = 1 / avatar.encoding.rate),
-    () => (engine.show.mesh = true),
+    () => (engine.show.template = true),
     () => (engine.camera.azimuth = 1),
     () => (engine.level = "full"),
     () => (engine.budget = 5),

@@ -32,7 +32,7 @@ namespace Mua.Samples.VrPlayer
         {
             PlayerAction.PlayPause, PlayerAction.NextFrame, PlayerAction.PreviousFrame, PlayerAction.NextClip,
             PlayerAction.PreviousClip, PlayerAction.NextAvatar, PlayerAction.PreviousAvatar, PlayerAction.Reset,
-            PlayerAction.Help, PlayerAction.Splats, PlayerAction.Geometry, PlayerAction.Mesh, PlayerAction.Skeleton,
+            PlayerAction.Help, PlayerAction.Splats, PlayerAction.Geometry, PlayerAction.Template, PlayerAction.Skeleton,
             PlayerAction.Shadow,
         };
 

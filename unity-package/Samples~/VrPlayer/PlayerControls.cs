@@ -89,7 +89,7 @@ namespace Mua.Samples.VrPlayer
         {
             return (Has(pressed, PlayerAction.Splats) ? AvatarViews.Splats : 0)
                 | (Has(pressed, PlayerAction.Geometry) ? AvatarViews.Geometry : 0)
-                | (Has(pressed, PlayerAction.Mesh) ? AvatarViews.Mesh : 0)
+                | (Has(pressed, PlayerAction.Template) ? AvatarViews.Template : 0)
                 | (Has(pressed, PlayerAction.Skeleton) ? AvatarViews.Skeleton : 0)
                 | (Has(pressed, PlayerAction.Shadow) ? AvatarViews.Shadow : 0);
         }

@@ -17,7 +17,7 @@ namespace Mua.Samples.VrPlayer
         PreviousAvatar = 64,
         Splats = 128,
         Geometry = 256,
-        Mesh = 512,
+        Template = 512,
         Skeleton = 1024,
         Shadow = 2048,
 

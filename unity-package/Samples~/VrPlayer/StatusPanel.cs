@@ -9,7 +9,7 @@ namespace Mua.Samples.VrPlayer
         private const float Interval = 0.5f; // seconds between two texts
         private const int Columns = 56; // of a message
 
-        private static readonly string[] ViewNames = { "splats", "geometry", "mesh", "skeleton", "shadow" }; // by bit
+        private static readonly string[] ViewNames = { "splats", "geometry", "template", "skeleton", "shadow" }; // by bit
 
         private readonly TextMesh target;
         private readonly AvatarRenderer shown;
