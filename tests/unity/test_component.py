@@ -28,8 +28,9 @@ def test_a_component_without_an_avatar_has_nothing_and_takes_nothing(story: Stor
     assert told["log"] == []
 
 
-def test_a_frame_allocates_nothing(story: Story) -> None:
-    assert story("Plays", "first")["allocated"] == ["0"]
+def test_a_frame_allocates_nothing_and_looks_up_no_name(story: Story) -> None:
+    told = story("Plays", "first")
+    assert (told["allocated"], told["lookups"]) == (["0"], ["0"])
     assert story("FollowsRig", "first")["allocated"] == ["0"]
 
 

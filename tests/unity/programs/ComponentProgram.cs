@@ -53,9 +53,11 @@ namespace Mua
             Frames(72);
             Say("dispatches", Recorder.Dispatches - dispatches);
             Say("draws", Recorder.Draws - draws);
+            int lookups = Recorder.Lookups;
             long before = GC.GetAllocatedBytesForCurrentThread();
             Frames(72);
             Say("allocated", GC.GetAllocatedBytesForCurrentThread() - before);
+            Say("lookups", Recorder.Lookups - lookups);
             shown.IsPlaying = false;
             shown.Frame = 3;
             Say("frame", shown.Frame);
