@@ -2,8 +2,8 @@
 // A frame decoded at once and posed; then the next one in parts, at the coarsest level; each sorted for the cameras.
 
 import { readFileSync } from "node:fs";
-import { coarsest } from "../../python/mua/web/coarser.js";
 import { window } from "../../python/mua/web/clip.js";
+import { coarsest } from "../../python/mua/web/coarser.js";
 import { read } from "../../python/mua/web/format/read.js";
 import { fakeGpu } from "./units/gpu.mjs";
 

@@ -58,7 +58,18 @@ class Fake {
     } catch {
       throw new AvatarError(`${name}: not an avatar.`);
     }
-    const handle = { notes: "", splats: 1, outsideTraining: 0, levels: [768, 384, 192], place: [0, 0, 0], bounds: [[-0.5, 0, -0.2], [0.5, 1.8, 0.2]], ...held };
+    const handle = {
+      notes: "",
+      splats: 1,
+      outsideTraining: 0,
+      levels: [768, 384, 192],
+      place: [0, 0, 0],
+      bounds: [
+        [-0.5, 0, -0.2],
+        [0.5, 1.8, 0.2],
+      ],
+      ...held,
+    };
     handle.remove = () => (this.avatars = this.avatars.filter((each) => each !== handle));
     this.avatars = [...this.avatars, handle];
     this.clip ??= handle.clips[0]?.name ?? null;

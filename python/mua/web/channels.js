@@ -2,7 +2,7 @@
 // displayed frames can share. Reference: python/mua/player/channels.py.
 
 import { wholeWords } from "./buffers.js";
-import { kernelWithRoom, kernelsOf } from "./kernel.js";
+import { kernelsOf, kernelWithRoom } from "./kernel.js";
 import { upsamplingTaps } from "./prepare.js";
 import { BlendDetail, BlendLl } from "./wgsl/blend_subbands.js";
 import { InverseDwt, UpsampleTexels } from "./wgsl/inverse_dwt.js";
@@ -55,7 +55,9 @@ export function upsampler(device, { factor, reach }) {
 
 /** The kernels that depend on the avatar, for its finest level. @param {Device} device @param {Avatar} avatar */
 export function kernelsFor(device, { wavelet, geometry, appearance }) {
-  const upsamplings = [geometry, appearance].map(({ details }) => upsamplingTaps(wavelet.recLo, wavelet.levels - details.length));
+  const upsamplings = [geometry, appearance].map(({ details }) =>
+    upsamplingTaps(wavelet.recLo, wavelet.levels - details.length),
+  );
   return [synthesis(device, wholeWords(wavelet.recLo).length), ...upsamplings.map((one) => upsampler(device, one))];
 }
 
@@ -71,7 +73,9 @@ export class ChannelDecoder {
     const low = avatar.texels.size / 2 ** avatar.wavelet.levels;
     const texture = (/** @type {Branch} */ branch, /** @type {number} */ before) =>
       branch.channels * planeBytes(Math.floor((low * 2 ** branch.details.length) / 2 ** before));
-    const details = branches.flatMap(({ channels, details }) => details.map((band) => 3 * channels * planeBytes(band.size)));
+    const details = branches.flatMap(({ channels, details }) =>
+      details.map((band) => 3 * channels * planeBytes(band.size)),
+    );
     this.activations = [0, 1].map((i) => memory.buffer(activations, `activations ${i}`));
     this.details = memory.buffer(Math.max(0, ...details), "details");
     // the finest texture with details, and its ll

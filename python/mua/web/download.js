@@ -92,7 +92,9 @@ export class Download {
 
   /** Ask for what is not there yet; a server that knows no ranges sends all of it again. @param {Response} first @param {Progress} progress */
   async resume(first, progress) {
-    const answer = await fetch(this.url, { headers: { Range: `bytes=${this.got}-` }, cache: "no-store" }).catch(() => null);
+    const answer = await fetch(this.url, { headers: { Range: `bytes=${this.got}-` }, cache: "no-store" }).catch(
+      () => null,
+    );
     if (!answer) return false;
     const part = answer.status === 206;
     if (!answer.ok && answer.status !== 416)

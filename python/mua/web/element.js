@@ -22,14 +22,14 @@
 // `picture` when the first one is drawn.
 
 import { Asked } from "./asked.js";
-import { adopt, ASKABLE, FOLLOWED, levelNamed, missingClip, namesOf, numberOf } from "./attributes.js";
+import { ASKABLE, adopt, FOLLOWED, levelNamed, missingClip, namesOf, numberOf } from "./attributes.js";
 import { Controls } from "./controls.js";
 import { acceptFiles } from "./drop.js";
 import { listen } from "./hands.js";
 import { pressed } from "./keys.js";
 import { Loading } from "./loading.js";
 import { look } from "./look.js";
-import { lessMotion, Loop } from "./loop.js";
+import { Loop, lessMotion } from "./loop.js";
 import { AvatarError, offersVR } from "./player.js";
 import { Attributed } from "./properties.js";
 import { Stage } from "./stage.js";
@@ -98,7 +98,11 @@ export class MuaAvatar extends Attributed {
     queueMicrotask(() => this.isConnected || this.#loading.dispose()); // an element that is moved stays as it is
   }
 
-  attributeChangedCallback(/** @type {string} */ name, /** @type {string | null} */ before, /** @type {string | null} */ value) {
+  attributeChangedCallback(
+    /** @type {string} */ name,
+    /** @type {string | null} */ before,
+    /** @type {string | null} */ value,
+  ) {
     if (before === value) return;
     if (name === "poster") this.#controls.setPoster(value);
     else if (name === "src") this.isConnected && void this.reload();
@@ -391,7 +395,9 @@ export class MuaAvatar extends Attributed {
   #fit() {
     const { canvas } = this.#controls;
     const sharp = Math.min(devicePixelRatio, SHARPEST);
-    const [width, height] = [canvas.clientWidth, canvas.clientHeight].map((side) => Math.max(Math.round(side * sharp), 1));
+    const [width, height] = [canvas.clientWidth, canvas.clientHeight].map((side) =>
+      Math.max(Math.round(side * sharp), 1),
+    );
     if (canvas.width === width && canvas.height === height) return;
     [canvas.width, canvas.height] = [width, height];
     this.#redraw();

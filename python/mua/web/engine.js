@@ -1,6 +1,6 @@
 // A player: its avatars and what is looked at, the loop that draws them, and what it does when the device is lost.
 
-import { camerasOf, framing, FOV } from "./camera.js";
+import { camerasOf, FOV, framing } from "./camera.js";
 import { AvatarError } from "./error.js";
 import { described, handleOf } from "./handle.js";
 import { load } from "./load.js";
@@ -62,7 +62,10 @@ export class Engine {
   /** A renderer whose device, where it is lost, is replaced. */
   async opened() {
     const renderer = await Renderer.open(this.canvas, this.options);
-    const { device, closed: { signal } } = renderer;
+    const {
+      device,
+      closed: { signal },
+    } = renderer;
     const lost = (/** @type {string} */ reason) => {
       if (reason === "destroyed") return;
       if (this.renderer === renderer) this.recover(performance.now() - device.since);

@@ -118,7 +118,9 @@ export function kernelsOf(/** @type {Device} */ device, /** @type {T} */ shaders
 
 /** Whether all of these kernels were compiled on a device before. */
 export function areCompiled(/** @type {Device} */ device, /** @type {Record<string, Shader>} */ shaders) {
-  return Object.values(shaders).every((shader) => /** @type {Kernel | undefined} */ (device.known.get(shader))?.pipeline);
+  return Object.values(shaders).every(
+    (shader) => /** @type {Kernel | undefined} */ (device.known.get(shader))?.pipeline,
+  );
 }
 
 /** A kernel whose groups share so many elements of an array, compiled once for a device. @param {Device} device @param {Shader} shader @param {string} array @param {number} count @returns {Kernel} */

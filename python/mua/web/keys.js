@@ -49,7 +49,9 @@ export const LISTED = [
   ["right drag, two fingers", "move aside"],
   ["wheel, pinch", "zoom"],
   ["shift and arrows", "turn"],
-  ...Object.values(KEYS).map(([key, does]) => [key, does]).filter(([key]) => key),
+  ...Object.values(KEYS)
+    .map(([key, does]) => [key, does])
+    .filter(([key]) => key),
 ];
 
 /** Do what a key stands for, unless the control that has the focus wants it; says whether it did. */

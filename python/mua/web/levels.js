@@ -37,7 +37,10 @@ export class Levels {
 export function levelsOf(standing, { level, budget }, cameras) {
   const chosen =
     level === "auto"
-      ? chooseLevels(standing.map(({ levels, pose, place }) => levels.seen(pose, place, cameras)), budget)
+      ? chooseLevels(
+          standing.map(({ levels, pose, place }) => levels.seen(pose, place, cameras)),
+          budget,
+        )
       : standing.map(({ levels }) => (typeof level === "number" ? Math.max(levels.sizes.indexOf(level), 0) : 0));
   standing.forEach(({ levels }, i) => (levels.shown = chosen[i]));
   return chosen;

@@ -1,8 +1,8 @@
 // What the page's device holds of the avatars of one player, and the pictures that it draws of them. A lost device's renderer is
 // left behind and another one made.
 
-import { camerasOf } from "./camera.js";
 import { AvatarBuffers } from "./buffers.js";
+import { camerasOf } from "./camera.js";
 import { KERNELS as DECODING, kernelsFor } from "./channels.js";
 import { window } from "./clip.js";
 import { Memory } from "./device.js";
@@ -58,7 +58,9 @@ export class Renderer {
     this.shared = new Memory(device); // the splats of all avatars
     this.decoding = compiled(kernelsOf(device, { ...DECODING, BlendVertices }));
     // What comes later is compiled later: the first frame is decoded meanwhile.
-    this.projecting = this.decoding.then(() => compiled({ ...kernelsOf(device, PROJECTING), splats: this.scene.splats }));
+    this.projecting = this.decoding.then(() =>
+      compiled({ ...kernelsOf(device, PROJECTING), splats: this.scene.splats }),
+    );
     this.projecting.catch(() => {}); // whoever adds an avatar or draws it is told
     /** @type {Promise<unknown> | null} */
     this.sorting = null; // once the first picture is there

@@ -1,9 +1,9 @@
 // All avatars' splats together: the dispatches from posed texels to the splats that are seen, back to front, a plain list in
 // the order of the kernels. Reference: python/mua/player/splats.py.
 
-import { AvatarError } from "./error.js";
 import { sees } from "./camera.js";
 import { FLOAT, groups } from "./channels.js";
+import { AvatarError } from "./error.js";
 import { kernelsOf } from "./kernel.js";
 import { SplatProject } from "./wgsl/splat_project.js";
 import { CountDigits, ScanDigits, ScatterDigits } from "./wgsl/splat_sort.js";

@@ -21,6 +21,6 @@ self.onmessage = async ({ data: source }) => {
 
 /** The memory behind all arrays of an avatar. @returns {Generator<ArrayBuffer>} */
 function* memories(/** @type {unknown} */ value) {
-  if (ArrayBuffer.isView(value)) yield /** @type {ArrayBuffer} */ (value.buffer);
+  if (ArrayBuffer.isView(value)) yield/** @type {ArrayBuffer} */ (value.buffer);
   else if (value && typeof value === "object") for (const part of Object.values(value)) yield* memories(part);
 }

@@ -2,8 +2,8 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { adopt, ASKABLE, levelNamed, numberOf } from "../../../python/mua/web/attributes.js";
-import { fakePlayer, FakeElement } from "./page.mjs";
+import { ASKABLE, adopt, levelNamed, numberOf } from "../../../python/mua/web/attributes.js";
+import { FakeElement, fakePlayer } from "./page.mjs";
 
 const ALL = { splats: false, geometry: false, template: false, skeleton: false, shadow: false };
 

@@ -124,7 +124,10 @@ test("a device that comes back draws all avatars by slots of its own", async () 
   for (let i = 0; i < 2; i++) await engine.put(avatar, null, true);
   await engine.recover(LONG);
   assert.equal(devices.length, 2);
-  assert.deepEqual(engine.entries.map(({ slot }) => slot), devices[1].slots);
+  assert.deepEqual(
+    engine.entries.map(({ slot }) => slot),
+    devices[1].slots,
+  );
   assert.deepEqual(devices[1].drawn, [devices[1].slots]);
   assert.deepEqual([engine.renderer, told], [devices[1], []]);
 });

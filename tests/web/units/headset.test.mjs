@@ -62,7 +62,14 @@ function fakeGpu() {
     noted,
     queue: { submit: () => (noted.submitted += 1) },
     createTexture({ size: [width, height], ...given }) {
-      const made = { width, height, ...given, destroyed: 0, createView: () => "picture", destroy: () => (made.destroyed += 1) };
+      const made = {
+        width,
+        height,
+        ...given,
+        destroyed: 0,
+        createView: () => "picture",
+        destroy: () => (made.destroyed += 1),
+      };
       noted.textures.push(made);
       return made;
     },
@@ -72,7 +79,8 @@ function fakeGpu() {
     createCommandEncoder: () => ({
       beginRenderPass(given) {
         const pass = { given };
-        for (const name of ["setPipeline", "setBindGroup", "setViewport", "draw", "end"]) pass[name] = (...all) => (pass[name] = all);
+        for (const name of ["setPipeline", "setBindGroup", "setViewport", "draw", "end"])
+          pass[name] = (...all) => (pass[name] = all);
         noted.passes.push(pass);
         return pass;
       },
@@ -153,12 +161,36 @@ test("a frame draws both eyes side by side and lays each on its part of its imag
   session.show(VIEWS, 40);
   const [{ now, picture, eyes }] = told.drawn;
   assert.equal(now, 40);
-  assert.deepEqual(eyes.map(({ screen }) => screen), [[120, 160], [120, 160]]);
+  assert.deepEqual(
+    eyes.map(({ screen }) => screen),
+    [
+      [120, 160],
+      [120, 160],
+    ],
+  );
   assert.deepEqual([picture.width, picture.height, picture.usage], [240, 160, 20]);
-  assert.deepEqual(gpu.noted.passes.map(({ setViewport }) => setViewport), [[4, 6, 120, 160, 0, 1], [5, 6, 120, 160, 0, 1]]);
-  assert.deepEqual(gpu.noted.passes.map(({ draw }) => draw), [[3, 1, 0, 0], [3, 1, 0, 1]]);
-  assert.deepEqual(gpu.noted.passes.map(({ given }) => given.colorAttachments[0].view), ["image 0", "image 1"]);
-  assert.deepEqual(gpu.noted.pipelines.map(({ vertex, fragment }) => [vertex.constants, fragment.targets]), [[{ eyes: 2 }, [{ format: "bgra8unorm" }]]]);
+  assert.deepEqual(
+    gpu.noted.passes.map(({ setViewport }) => setViewport),
+    [
+      [4, 6, 120, 160, 0, 1],
+      [5, 6, 120, 160, 0, 1],
+    ],
+  );
+  assert.deepEqual(
+    gpu.noted.passes.map(({ draw }) => draw),
+    [
+      [3, 1, 0, 0],
+      [3, 1, 0, 1],
+    ],
+  );
+  assert.deepEqual(
+    gpu.noted.passes.map(({ given }) => given.colorAttachments[0].view),
+    ["image 0", "image 1"],
+  );
+  assert.deepEqual(
+    gpu.noted.pipelines.map(({ vertex, fragment }) => [vertex.constants, fragment.targets]),
+    [[{ eyes: 2 }, [{ format: "bgra8unorm" }]]],
+  );
   assert.equal(gpu.noted.submitted, 1);
 });
 
@@ -169,8 +201,17 @@ test("each eye is seen through its own projection from its own place", async () 
   other.transform = { inverse: { matrix: IDENTITY.map((value, i) => (i === 12 ? -0.064 : value)) } };
   session.show([view(0), other]);
   const [left, right] = told.drawn[0].eyes;
-  assert.deepEqual([left, right].map(({ position }) => position[0] + 0), [0, 0.064]);
-  assert.deepEqual([left, right].map(({ projection }) => [projection[0], projection[2] + 0]), [[1, 0], [2, 0.25]]);
+  assert.deepEqual(
+    [left, right].map(({ position }) => position[0] + 0),
+    [0, 0.064],
+  );
+  assert.deepEqual(
+    [left, right].map(({ projection }) => [projection[0], projection[2] + 0]),
+    [
+      [1, 0],
+      [2, 0.25],
+    ],
+  );
 });
 
 test("the picture is kept from frame to frame, and made anew for images of another width or height", async () => {
@@ -184,7 +225,14 @@ test("the picture is kept from frame to frame, and made anew for images of anoth
   } finally {
     Object.assign(VIEWPORT, { width, height });
   }
-  assert.deepEqual(gpu.noted.textures.map(({ width: w, height: h, destroyed }) => [w, h, destroyed]), [[240, 160, 1], [180, 160, 1], [180, 100, 0]]);
+  assert.deepEqual(
+    gpu.noted.textures.map(({ width: w, height: h, destroyed }) => [w, h, destroyed]),
+    [
+      [240, 160, 1],
+      [180, 160, 1],
+      [180, 100, 0],
+    ],
+  );
 });
 
 test("while nobody knows where the head is, nothing is drawn and the next frame is waited for", async () => {

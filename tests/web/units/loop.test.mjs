@@ -28,7 +28,11 @@ function begun(more = {}) {
     ...more,
   };
   const avatar = { player, avatars: ["one"] };
-  const asks = { tick: (seconds) => told.ticks.push(seconds), drawn() {}, fail: (error) => told.failed.push(error.message) };
+  const asks = {
+    tick: (seconds) => told.ticks.push(seconds),
+    drawn() {},
+    fail: (error) => told.failed.push(error.message),
+  };
   return { loop: new Loop(avatar, asks), avatar, player, told };
 }
 
@@ -60,7 +64,10 @@ test("what changes is drawn once, however often it is asked for", async () => {
 });
 
 test("a picture that fails is told; one of a player that was given back meanwhile is not", async () => {
-  for (const [given, wanted] of [[false, ["broken"]], [true, []]]) {
+  for (const [given, wanted] of [
+    [false, ["broken"]],
+    [true, []],
+  ]) {
     const { loop, avatar, told } = begun({ draw: async () => (await settled(), Promise.reject(new Error("broken"))) });
     loop.redraw();
     const shown = show(0);

@@ -3,16 +3,19 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { beforeEach, test } from "node:test";
+import { framing } from "../../../python/mua/web/camera.js";
 import { Engine } from "../../../python/mua/web/engine.js";
 import { read } from "../../../python/mua/web/format/read.js";
-import { framing } from "../../../python/mua/web/camera.js";
 import { boxAround } from "../../../python/mua/web/placement.js";
 import { Renderer } from "../../../python/mua/web/renderer.js";
 
 const content = readFileSync(new URL("../../golden/synthetic.muaavatar", import.meta.url));
 const golden = await read(Uint8Array.from(content).buffer);
 const FRAME = 1000 / golden.encoding.rate; // milliseconds
-const walking = { ...golden.clips[0], translation: golden.clips[0].translation.map((at, i) => (i % 3 ? at : at + i / 3)) }; // a metre a frame
+const walking = {
+  ...golden.clips[0],
+  translation: golden.clips[0].translation.map((at, i) => (i % 3 ? at : at + i / 3)),
+}; // a metre a frame
 const avatar = { ...golden, clips: [walking] };
 
 let device; // that was opened last
@@ -129,7 +132,10 @@ test("while kernels are still compiled, pictures are drawn without them, one aft
   assert.deepEqual(device.done, []);
   release();
   await new Promise((done) => setTimeout(done));
-  assert.deepEqual(device.done.map((each) => Object.keys(each)[0]), ["early"]);
+  assert.deepEqual(
+    device.done.map((each) => Object.keys(each)[0]),
+    ["early"],
+  );
   release();
   await drawn;
 });
@@ -150,7 +156,10 @@ test("a pose is decoded ahead while the display or a headset goes on, and exactl
 
 test("the whole of an avatar stands on its own ground, not on that of the part before it", async () => {
   const engine = await begun();
-  const low = { ...avatar, clips: [{ ...walking, translation: walking.translation.map((at, i) => (i % 3 === 1 ? at - 1 : at)) }] };
+  const low = {
+    ...avatar,
+    clips: [{ ...walking, translation: walking.translation.map((at, i) => (i % 3 === 1 ? at - 1 : at)) }],
+  };
   const part = await engine.put(low, null, false);
   const before = engine.posed()[0].ground;
   await engine.put(avatar, part, true);
@@ -176,7 +185,10 @@ test("in stereo an avatar is framed for one eye, which has half of the width", a
   engine.canvas.height = 300;
   const box = boxAround(engine.entries, engine.playback);
   const found = [];
-  for (const [stereo, screen] of [[false, [80, 300]], [true, [40, 300]]]) {
+  for (const [stereo, screen] of [
+    [false, [80, 300]],
+    [true, [40, 300]],
+  ]) {
     engine.stereo = stereo;
     engine.frameAll();
     assert.equal(engine.camera.distance, framing(box, engine.camera, screen).distance);

@@ -2,8 +2,8 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { ProgressiveLoad } from "../../../python/mua/web/progressive.js";
 import { AvatarError } from "../../../python/mua/web/error.js";
+import { ProgressiveLoad } from "../../../python/mua/web/progressive.js";
 
 const settled = () => new Promise((done) => setTimeout(done));
 
@@ -33,7 +33,11 @@ test("each part takes the place of the one before, the whole one the last", asyn
     await settled();
   }
   const handle = await progressive.complete("all");
-  assert.deepEqual(noted, [["mesh", false], ["coarse", false], ["all", true]]);
+  assert.deepEqual(noted, [
+    ["mesh", false],
+    ["coarse", false],
+    ["all", true],
+  ]);
   assert.deepEqual([engine.entries.length, told], [1, [handle, handle]]);
 });
 
@@ -60,7 +64,9 @@ test("a part that waits is left out once all of it is there", async () => {
 
 test("the whole avatar waits for the part that is being shown, and takes its place", async () => {
   let shown;
-  const { progressive, engine, noted } = arriving({ put: (avatar) => avatar === "mesh" && new Promise((done) => (shown = done)) });
+  const { progressive, engine, noted } = arriving({
+    put: (avatar) => avatar === "mesh" && new Promise((done) => (shown = done)),
+  });
   progressive.show("mesh");
   await settled();
   const whole = progressive.complete("all");

@@ -87,5 +87,8 @@ test("those that still want to know are told once that a device is lost, and tho
   await lost;
   device.whenLost((reason) => told.push(["later", reason]));
   await null;
-  assert.deepEqual(told, [["stays", "unknown"], ["later", "unknown"]]);
+  assert.deepEqual(told, [
+    ["stays", "unknown"],
+    ["later", "unknown"],
+  ]);
 });

@@ -6,8 +6,8 @@ import { beforeEach, test } from "node:test";
 import { read } from "../../../python/mua/web/format/read.js";
 import { handleOf } from "../../../python/mua/web/handle.js";
 import { Headset } from "../../../python/mua/web/headset.js";
-import { Playback } from "../../../python/mua/web/playback.js";
 import { boxAround, groundOf } from "../../../python/mua/web/placement.js";
+import { Playback } from "../../../python/mua/web/playback.js";
 import { VR } from "../../../python/mua/web/vr.js";
 
 const content = readFileSync(new URL("../../golden/synthetic.muaavatar", import.meta.url));
@@ -20,7 +20,11 @@ function engineOf(...places) {
   const told = { vr: [], failed: [], drawn: 0, submitted: [] };
   const engine = {
     told,
-    entries: places.map((place) => ({ avatar, grounds: new Map(), handle: { ...handleOf(avatar, { remove() {}, outside: () => 0 }), place } })),
+    entries: places.map((place) => ({
+      avatar,
+      grounds: new Map(),
+      handle: { ...handleOf(avatar, { remove() {}, outside: () => 0 }), place },
+    })),
     camera: { azimuth: 0.7 },
     drawn: "what the canvas shows",
     way: [0, 0, 0],
@@ -45,17 +49,28 @@ beforeEach(() => {
   };
 });
 
-const moved = (matrix, point) => [0, 4, 8].map((row) => [0, 1, 2].reduce((sum, i) => sum + matrix[row + i] * point[i], matrix[row + 3]));
-const near = (found, wanted) => found.forEach((value, i) => assert.ok(Math.abs(value - wanted[i]) < 1e-9, `${found} is not ${wanted}`));
+const moved = (matrix, point) =>
+  [0, 4, 8].map((row) => [0, 1, 2].reduce((sum, i) => sum + matrix[row + i] * point[i], matrix[row + 3]));
+const near = (found, wanted) =>
+  found.forEach((value, i) => assert.ok(Math.abs(value - wanted[i]) < 1e-9, `${found} is not ${wanted}`));
 
 /** Middle of their box on the lowest ground, and half of the box' diagonal along the ground. */
 function foot(engine) {
   const box = boxAround(engine.entries, engine.playback);
   const grounds = engine.entries.map((entry) => groundOf(entry, engine.playback) + entry.handle.place[1]);
-  return [[(box[0] + box[3]) / 2, Math.min(...grounds), (box[2] + box[5]) / 2], Math.hypot(box[3] - box[0], box[5] - box[2]) / 2];
+  return [
+    [(box[0] + box[3]) / 2, Math.min(...grounds), (box[2] + box[5]) / 2],
+    Math.hypot(box[3] - box[0], box[5] - box[2]) / 2,
+  ];
 }
 
-for (const places of [[[0, 0, 0]], [[-1, 0.3, 0], [1, -0.2, 2]]])
+for (const places of [
+  [[0, 0, 0]],
+  [
+    [-1, 0.3, 0],
+    [1, -0.2, 2],
+  ],
+])
   test(`${places.length} avatars stand on the floor before the reader, the lowest of them`, () => {
     const engine = engineOf(...places);
     const [middle, reach] = foot(engine);
@@ -70,7 +85,13 @@ test("they are seen from the side from which the page shows them", () => {
   const [middle, reach] = foot(engine);
   const room = new VR(engine).standing()();
   const towards = [Math.sin(0.7), 0, Math.cos(0.7)]; // where the page's camera stands
-  near(moved(room, middle.map((at, axis) => at + towards[axis])), [0, 0, 1 - BEFORE - reach]);
+  near(
+    moved(
+      room,
+      middle.map((at, axis) => at + towards[axis]),
+    ),
+    [0, 0, 1 - BEFORE - reach],
+  );
 });
 
 test("a figure that is followed stays before the reader", () => {
