@@ -29,7 +29,7 @@ namespace Mua
     /// <summary>How many texels of an avatar are shown.</summary>
     public enum AvatarLevel
     {
-        /// <summary>As many as can be told apart at its distance, within the AvatarBudget where there is one.</summary>
+        /// <summary>As many as can be distinguished at its distance, within the AvatarBudget if there is one.</summary>
         Automatic,
 
         /// <summary>All.</summary>
@@ -209,7 +209,7 @@ namespace Mua
 
         private AvatarPlayback Playback => shown == null ? AvatarPlayback.None : shown.Playback;
 
-        /// <summary>Those of active GameObjects in the open scenes, in no order.</summary>
+        /// <summary>All AvatarRenderers of active GameObjects in the open scenes, in no order.</summary>
         internal static AvatarRenderer[] All()
         {
 #if UNITY_6000_4_OR_NEWER // where the one below is deprecated
@@ -285,7 +285,7 @@ namespace Mua
             shown?.Move(IsPlaying && Application.isPlaying ? Time.deltaTime * speed : 0);
         }
 
-        /// <summary>Has what the inspector changed take effect.</summary>
+        /// <summary>Applies what the inspector changed.</summary>
         private void Revise()
         {
             isEdited = false;

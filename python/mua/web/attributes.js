@@ -5,7 +5,7 @@ import { SHOWN } from "./keys.js";
 
 /** @typedef {import("./player.js").Player} Player */
 
-/** Those that are followed whenever they change. */
+/** Attributes that take effect whenever they change. */
 export const FOLLOWED = [
   "src",
   "clip",
@@ -56,7 +56,7 @@ function asked(name, value, expected, found) {
   return found;
 }
 
-/** Why the clip that is asked for does not play, where all that was to be loaded is there; nothing where it does. */
+/** An error if everything is loaded and the requested clip does not exist; null otherwise. */
 export function missingClip(/** @type {import("./element.js").MuaAvatar} */ element) {
   const { loaded, avatars } = element;
   const name = element.getAttribute("clip");
@@ -67,7 +67,7 @@ export function missingClip(/** @type {import("./element.js").MuaAvatar} */ elem
   );
 }
 
-/** Those that a player can be asked for. */
+/** Attributes that set something on the player. */
 export const ASKABLE = Object.keys(ASKED);
 
 /** Let a player do what an element's attribute asks for. */

@@ -38,7 +38,7 @@ export const KERNELS = { BlendDetail, MlpMatmul, MlpMatmulTransposed, BlendLl };
 /** Groups of `size` that hold `count`. */
 export const groups = (/** @type {number} */ count, /** @type {number} */ size) => Math.ceil(count / size);
 
-/** Of a plane of half floats, whose rows are whole words. */
+/** Words of a plane of half floats; each row fills whole words. */
 const planeBytes = (/** @type {number} */ size) => FLOAT * size * groups(size, 2);
 
 /** InverseDwt, whose groups share the rows of ll that filters of so many taps need, low- and high-pass. @param {Device} device @param {number} taps */
@@ -61,7 +61,7 @@ export function kernelsFor(device, { wavelet, geometry, appearance }) {
   return [synthesis(device, wholeWords(wavelet.recLo).length), ...upsamplings.map((one) => upsampler(device, one))];
 }
 
-/** The buffers between the kernels of a decode, sized once and reused by every part: none hands on to another. */
+/** The buffers between the kernels of a decode, sized once and reused by every part; no part reads what another has left in them. */
 export class ChannelDecoder {
   constructor(/** @type {AvatarBuffers} */ buffers) {
     const { avatar, geometry, appearance, coarseMlp, memory } = buffers;
@@ -82,7 +82,7 @@ export class ChannelDecoder {
     this.textures = [0, 1].map((i) => memory.buffer(Math.max(...branches.map((b) => texture(b, i))), `texture ${i}`));
   }
 
-  /** Append one of PARTS, from the components in `channels` to what it makes of them. */
+  /** Append one of PARTS: from the components in `channels` to this part's channels. */
   part(/** @type {GPUComputePassEncoder} */ pass, /** @type {ChannelSet} */ channels, /** @type {number} */ part) {
     const { geometry, appearance } = this.buffers;
     if (part > 0) this.coarse(pass, channels);
@@ -90,7 +90,7 @@ export class ChannelDecoder {
     else this.branch(pass, appearance, channels.level.appearance, channels, ROWS / 2);
   }
 
-  /** What the MLP makes of the components; good until the next MLP. */
+  /** Output of the MLP for the components; the next MLP overwrites it. */
   mlp(/** @type {GPUComputePassEncoder} */ pass, /** @type {Mlp} */ mlp, /** @type {GPUBuffer} */ components) {
     let x = components;
     mlp.forEach((layer, i) => {

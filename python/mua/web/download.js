@@ -27,7 +27,7 @@ export class Download {
     this.beyond = []; // what a server sends without having said so
   }
 
-  /** The end of the newest stage that is there and was not told before; 0 where there is none. */
+  /** The end of the newest stage that has arrived and was not returned before; 0 if there is none. */
   reached() {
     return this.stages.reached(this.got);
   }

@@ -17,7 +17,7 @@
 //   orbit       degrees per second by which the camera goes round while it plays, unless less motion is wanted
 //
 // Each is a property too; both may be set before, while and after an avatar loads, as play(), pause() and seek() may be called.
-// `outsideTraining` tells how far the pose last drawn is from those of training, 0 to 1.
+// `outsideTraining` is how far the pose last drawn is from those of training, 0 to 1.
 // Events: `progress` with `detail.totalProgress` of 0 to 1, `load` when an avatar is shown, `error` with the error in `detail`,
 // `picture` when the first one is drawn.
 
@@ -196,7 +196,7 @@ export class MuaAvatar extends Attributed {
     await this.#loading.reload();
   }
 
-  /** Show more avatars beside those that are there; what fails is said on the page and told by the event `error`. */
+  /** Show more avatars beside those that are there; a failure is shown on the page and reported by the event `error`. */
   async add(/** @type {Source[]} */ ...sources) {
     await this.#loading.add(sources);
   }

@@ -47,7 +47,7 @@ export class AvatarFrame {
     };
   }
 
-  /** Of the decode that is shown; the buffers hold the finest level. */
+  /** Level of the decode that is shown; the buffers have room for the finest. */
   get splatCount() {
     return this.shown.level.splatCount;
   }

@@ -11,7 +11,7 @@ import { world } from "./skeleton.js";
 export const sizesOf = (/** @type {Avatar} */ avatar) =>
   Array.from({ length: avatar.texels.levels.length + 1 }, (_, level) => avatar.texels.size / 2 ** level);
 
-/** Of one avatar, from picture to picture. */
+/** The levels of one avatar, and the one that it was last shown at. */
 export class Levels {
   constructor(/** @type {Avatar} */ avatar) {
     this.avatar = avatar;

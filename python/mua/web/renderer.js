@@ -61,7 +61,7 @@ export class Renderer {
     this.projecting = this.decoding.then(() =>
       compiled({ ...kernelsOf(device, PROJECTING), splats: this.scene.splats }),
     );
-    this.projecting.catch(() => {}); // whoever adds an avatar or draws it is told
+    this.projecting.catch(() => {}); // whoever adds an avatar or draws it gets the error
     /** @type {Promise<unknown> | null} */
     this.sorting = null; // once the first picture is there
     this.ready = false; // to draw at once
@@ -172,7 +172,7 @@ export class Renderer {
     this.submit(this.context.getCurrentTexture(), posed, look);
   }
 
-  /** The same picture as a PNG. @returns {Promise<Blob>} */
+  /** The picture as a PNG. @returns {Promise<Blob>} */
   async picture(/** @type {Posed[]} */ posed, /** @type {Look} */ look) {
     const memory = new Memory(this.device);
     const { width, height } = this.canvas;

@@ -15,7 +15,7 @@ self.onmessage = async ({ data: source }) => {
   } catch (error) {
     if (!(error instanceof AvatarError)) throw error;
     const { message, code, field } = error;
-    self.postMessage({ told: { message, code, field } });
+    self.postMessage({ failure: { message, code, field } });
   }
 };
 

@@ -68,7 +68,7 @@ test("a worker reads an avatar, tells how far it is and what is there, and is en
 });
 
 test("what a worker finds wrong is an error of the page's own, with code and field, and the worker is ended", async () => {
-  const worker = working({ told: { message: "It is damaged.", code: "checksum", field: "clips" } });
+  const worker = working({ failure: { message: "It is damaged.", code: "checksum", field: "clips" } });
   await assert.rejects(
     loadApart(new Blob([sound]), () => {}),
     { name: "AvatarError", message: "It is damaged.", code: "checksum", field: "clips" },

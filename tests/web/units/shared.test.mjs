@@ -13,8 +13,8 @@ mock.timers.enable({ apis: ["setTimeout"] });
 class FakeDevice {
   destroyed = 0;
   gpu = { destroy: () => (this.destroyed += 1) };
-  lose = () => this.told?.();
-  whenLost = (told) => (this.told = told);
+  lose = () => this.listener?.();
+  whenLost = (listener) => (this.listener = listener);
 }
 
 beforeEach(() => {

@@ -17,9 +17,9 @@ const BEFORE = 1.2; // metres between the reader and what is nearest
 let headsets; // that were opened
 
 function engineOf(...places) {
-  const told = { vr: [], failed: [], drawn: 0, submitted: [] };
+  const noted = { vr: [], failed: [], drawn: 0, submitted: [] };
   const engine = {
-    told,
+    noted,
     entries: places.map((place) => ({
       avatar,
       grounds: new Map(),
@@ -29,12 +29,12 @@ function engineOf(...places) {
     drawn: "what the canvas shows",
     way: [0, 0, 0],
     followed: () => engine.way,
-    renderer: { device: "device", submit: (...given) => told.submitted.push(given) },
+    renderer: { device: "device", submit: (...given) => noted.submitted.push(given) },
     posed: () => "posed",
     look: "look",
-    drawNow: () => (told.drawn += 1),
-    onvr: (vr) => told.vr.push(vr),
-    fail: (error) => told.failed.push(error),
+    drawNow: () => (noted.drawn += 1),
+    onvr: (vr) => noted.vr.push(vr),
+    fail: (error) => noted.failed.push(error),
   };
   engine.playback = new Playback(() => engine.entries[0]?.handle.clips ?? []);
   return engine;
@@ -104,15 +104,15 @@ test("a figure that is followed stays before the reader", () => {
   near(moved(room(), [middle[0] + 0.5, middle[1], middle[2] + 2]), [0, 0, -BEFORE - reach]);
 });
 
-test("entering and leaving is told, and the canvas gets its picture back", async () => {
+test("entering and leaving is noted, and the canvas gets its picture back", async () => {
   const engine = engineOf([0, 0, 0]);
   const vr = new VR(engine);
   await vr.enter();
-  assert.deepEqual([vr.headset, engine.told.vr, headsets[0].device], [headsets[0], [true], "device"]);
+  assert.deepEqual([vr.headset, engine.noted.vr, headsets[0].device], [headsets[0], [true], "device"]);
   vr.leave();
   assert.equal(headsets[0].left, 1);
   headsets[0].asks.ended();
-  assert.deepEqual([vr.headset, engine.told.vr, engine.told.drawn, engine.drawn], [null, [true, false], 1, ""]);
+  assert.deepEqual([vr.headset, engine.noted.vr, engine.noted.drawn, engine.drawn], [null, [true, false], 1, ""]);
   vr.leave();
   assert.equal(headsets[0].left, 1);
 });
@@ -124,9 +124,9 @@ test("a frame of the headset moves the clip on and draws what is posed", async (
   engine.playback.playing = true;
   headsets[0].asks.draw(100, "picture", "eyes");
   assert.ok(Math.abs(engine.playback.time - 0.1) < 1e-12);
-  assert.deepEqual(engine.told.submitted, [["picture", "posed", "look", "eyes"]]);
+  assert.deepEqual(engine.noted.submitted, [["picture", "posed", "look", "eyes"]]);
   headsets[0].asks.fail("broken");
-  assert.deepEqual(engine.told.failed, ["broken"]);
+  assert.deepEqual(engine.noted.failed, ["broken"]);
 });
 
 test("a second click opens no second session, neither while the first opens nor after", async () => {
@@ -152,7 +152,7 @@ test("without an avatar or a device there is nothing to show", async () => {
   assert.equal(headsets.length, 0);
 });
 
-test("a device that is lost while the session opens ends it, and nobody is told of a beginning or an end", async () => {
+test("a device that is lost while the session opens ends it, and nobody is noted of a beginning or an end", async () => {
   const engine = engineOf([0, 0, 0]);
   const vr = new VR(engine);
   const entering = vr.enter();
@@ -160,5 +160,5 @@ test("a device that is lost while the session opens ends it, and nobody is told 
   await entering;
   assert.deepEqual([headsets[0].left, vr.headset], [1, null]);
   headsets[0].asks.ended();
-  assert.deepEqual([engine.told.vr, engine.told.drawn], [[], 0]);
+  assert.deepEqual([engine.noted.vr, engine.noted.drawn], [[], 0]);
 });

@@ -29,7 +29,7 @@ namespace Mua.Samples.VrPlayer
             this.display = display;
         }
 
-        /// <summary>A frame of so many seconds has passed; `message` is what the player has to say.</summary>
+        /// <summary>Counts a frame that took so many seconds; `message` is the player's own line.</summary>
         public void Count(float seconds, string message)
         {
             FrameTimingManager.CaptureFrameTimings();

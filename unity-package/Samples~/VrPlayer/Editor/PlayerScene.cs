@@ -88,7 +88,7 @@ namespace Mua.Samples.VrPlayer.Editor
             ground.GetComponent<MeshRenderer>().sharedMaterial = material;
         }
 
-        /// <summary>It faces the user.</summary>
+        /// <summary>The avatar faces the user.</summary>
         private static AvatarRenderer AddAvatar()
         {
             var avatar = new GameObject("Avatar").AddComponent<AvatarRenderer>();
