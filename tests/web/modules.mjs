@@ -204,11 +204,11 @@ function soon(total, bytes) {
   });
 }
 
-/** What is put into an engine, by the step that brought it, and the parts that the page is told of. */
+/** What is put into an engine, by the step that brought it, and the parts that the page is reported of. */
 async function shown(steps) {
   let resolve = () => {};
   const promise = new Promise((done) => (resolve = done));
-  const [put, told, entries] = [[], [], []];
+  const [put, reported, entries] = [[], [], []];
   const entry = { handle: { remove: () => put.push("removed") } };
   const engine = {
     entries,
@@ -219,7 +219,7 @@ async function shown(steps) {
       return entry;
     },
   };
-  const progressive = new ProgressiveLoad(engine, () => told.push(put.at(-1)));
+  const progressive = new ProgressiveLoad(engine, () => reported.push(put.at(-1)));
   const ended = [];
   for (const step of steps) {
     if (step === "ready") resolve();
@@ -228,7 +228,7 @@ async function shown(steps) {
     await new Promise((next) => setTimeout(next));
   }
   await Promise.all(ended);
-  return { put, told };
+  return { put, reported };
 }
 
 if (what === "measured") say(await measured(given[0], Number(given[1])));

@@ -33,9 +33,9 @@ def opened(browser: Browser, serve: Serve) -> Iterator[Open]:
 
 
 def _all_explained(page: Page) -> None:
-    told = page.told
-    assert told["errors"] == []
-    assert [line for line in told["console"] if "Failed to load resource" not in line] == []
+    reported = page.reported
+    assert reported["errors"] == []
+    assert [line for line in reported["console"] if "Failed to load resource" not in line] == []
 
 
 def part(name: str) -> str:
@@ -326,16 +326,16 @@ def test_the_times_name_stages_and_device(opened: Open) -> None:
 def test_the_page_asks_for_nothing_but_its_own_folder(opened: Open) -> None:
     page = opened()
     home = page.evaluate("location.origin")
-    assert [url for url in page.told["requests"] if not url.startswith((home, "blob:", "data:"))] == []
+    assert [url for url in page.reported["requests"] if not url.startswith((home, "blob:", "data:"))] == []
     assert "script-src 'self'" in page.evaluate("document.querySelector('meta[http-equiv]').content")
 
 
 def test_the_page_may_not_ask_for_anything_else(browser: Browser, serve: Serve) -> None:
     page = browser.page(serve(fake_site()))
     elsewhere = serve({"x.js": b"globalThis.foreign = true"})
-    told = "addEventListener('securitypolicyviolation', (event) => done(event.effectiveDirective))"
+    reported = "addEventListener('securitypolicyviolation', (event) => done(event.effectiveDirective))"
     for code in (f"fetch('{elsewhere}x.js').catch(() => {{}})", f"import('{elsewhere}x.js').catch(() => {{}})"):
-        directive = page.evaluate(f"new Promise((done) => {{ {told}; {code}; }})")
+        directive = page.evaluate(f"new Promise((done) => {{ {reported}; {code}; }})")
         assert directive in ("connect-src", "script-src-elem")
     assert page.evaluate("globalThis.foreign ?? null") is None
     page.close()

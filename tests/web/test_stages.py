@@ -105,7 +105,7 @@ def test_the_rest_is_expected_by_how_fast_bytes_come_and_whether_they_do(
 
 
 @pytest.mark.parametrize(
-    ("steps", "put", "told"),
+    ("steps", "put", "reported"),
     [
         (["ready", "part 1", "whole"], ["part 1", "whole"], ["part 1"]),
         (["ready", "part 1", "part 2", "whole"], ["part 1", "part 2", "whole"], ["part 1", "part 2"]),
@@ -118,9 +118,9 @@ def test_the_rest_is_expected_by_how_fast_bytes_come_and_whether_they_do(
     ids=["part", "parts", "while it compiles", "newest", "whole by then", "failed", "failed by then"],
 )
 def test_a_part_is_shown_unless_more_is_there_by_the_time_that_the_device_can_draw(
-    steps: list[str], put: list[str], told: list[str]
+    steps: list[str], put: list[str], reported: list[str]
 ) -> None:
-    assert node("shown", *steps) == [{"put": put, "told": told}]
+    assert node("shown", *steps) == [{"put": put, "reported": reported}]
 
 
 @pytest.mark.parametrize("storage", ["f16", "i8"])

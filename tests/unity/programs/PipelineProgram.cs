@@ -199,7 +199,7 @@ namespace Mua
             Machine.IndirectArguments(true);
         }
 
-        /// <summary>One of two, when a camera was told to draw its buffers.</summary>
+        /// <summary>One of two, when a camera was asked to draw its buffers.</summary>
         private static void DestroyOne()
         {
             Show();

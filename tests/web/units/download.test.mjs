@@ -103,12 +103,12 @@ test("of a file that is packed on the way nobody knows the length: it is not ask
 });
 
 test("how far it is is said, of all where that is known", async () => {
-  const told = [];
+  const reported = [];
   for (const given of [{}, { "content-encoding": "br" }]) {
     [answers, headers] = [[[200, 0, 100]], [given]];
-    await new Download("http://host/a%20b.muaavatar").whole((...said) => told.push(said));
+    await new Download("http://host/a%20b.muaavatar").whole((...said) => reported.push(said));
   }
-  assert.deepEqual(told, [
+  assert.deepEqual(reported, [
     [1, "Fetching a b.muaavatar: 0.0 of 0.0 MB"],
     [0, "Fetching a b.muaavatar: 0.0 MB"],
   ]);

@@ -264,17 +264,17 @@ test("an avatar that is taken away leaves the others in the middle", async () =>
   );
 });
 
-test("the poster is there until the first picture, which is told once; each avatar is told", async () => {
-  const told = [];
+test("the poster is there until the first picture, which is reported once, as each avatar is", async () => {
+  const reported = [];
   const { element, part } = await begun({ src: "a", poster: "p.png" }, (one) => {
-    for (const kind of ["load", "picture", "error"]) one.addEventListener(kind, () => told.push(kind));
+    for (const kind of ["load", "picture", "error"]) one.addEventListener(kind, () => reported.push(kind));
     assert.deepEqual([one.parts.get(".poster").hidden, one.parts.get(".poster").src], [false, "p.png"]);
   });
   assert.equal(part(".poster").hidden, true);
   assert.ok(element.firstPicture > 0);
   refused.push("c");
   await element.add("b", "c");
-  assert.deepEqual(told, ["picture", "load", "load", "error"]);
+  assert.deepEqual(reported, ["picture", "load", "load", "error"]);
 });
 
 test("a part can be shown and hidden", async () => {
@@ -446,7 +446,7 @@ test("the controls show what is shown and how it plays", async () => {
   assert.equal(part(".bar").hidden, true);
 });
 
-test("who cannot see the picture is told what it shows", async () => {
+test("the picture is described to those who cannot see it", async () => {
   const { element, part } = await begun({ src: "a b" });
   const label = () => part("canvas").getAttribute("aria-label");
   assert.equal(label(), "a, b");

@@ -38,7 +38,7 @@ test("an avatar's joints and box go with its place", () => {
   near(frame.bounds, box);
 });
 
-test("what is told of a pose is told once it is shown", () => {
+test("what is known of a pose is reported once it is shown", () => {
   const frame = frameOf();
   const stretched = windowAt(0).map((pose) => ({
     ...pose,

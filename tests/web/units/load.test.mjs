@@ -57,13 +57,13 @@ test("a worker reads an avatar, tells how far it is and what is there, and is en
     { preview: "a part" },
     { avatar: "all of it" },
   );
-  const told = [];
+  const reported = [];
   const found = await loadApart(
     "a.muaavatar",
-    (...said) => told.push(said),
-    (part) => told.push(part),
+    (...said) => reported.push(said),
+    (part) => reported.push(part),
   );
-  assert.deepEqual([found, told], ["all of it", [[0.5, "half"], "a part"]]);
+  assert.deepEqual([found, reported], ["all of it", [[0.5, "half"], "a part"]]);
   assert.deepEqual([worker.source, worker.ended], ["http://host/folder/a.muaavatar", 1]);
 });
 

@@ -99,7 +99,7 @@ test("what src names is loaded one after the other, from where the page is", asy
   assert.deepEqual(named("show"), [[true], [true]]);
 });
 
-test("the controls follow an avatar before the page is told of it", async () => {
+test("the controls follow an avatar before the page hears of it", async () => {
   const { loading, done } = begun({ src: "a" });
   await loading.reload();
   assert.deepEqual(
@@ -299,7 +299,7 @@ test("a canvas has one player at a time, and those that nobody waits for are not
   assert.deepEqual([named("load").length, named("error")], [1, []]);
 });
 
-test("how far all of src is, and whether it is there, is told", async () => {
+test("how far all of src is, and whether it is there, is reported", async () => {
   const { loading, named } = begun({ src: "a b" });
   answers.a = ({ onProgress }) => onProgress(0.5, "half");
   answers.b = ({ onProgress }) => (assert.equal(loading.done, false), onProgress(1, "Ready"));

@@ -215,14 +215,14 @@ test("a device that is lost ends the headset's session", async () => {
   assert.equal(left, 1);
 });
 
-test("a picture that cannot be drawn stops the loop and is told", async () => {
+test("a picture that cannot be drawn stops the loop and is reported", async () => {
   const engine = await begun(avatar);
-  const told = [];
-  engine.onerror = ({ message }) => told.push(message);
+  const reported = [];
+  engine.onerror = ({ message }) => reported.push(message);
   device.draw = () => {
     throw new Error("too large");
   };
   engine.start();
   show(engine, 1);
-  assert.deepEqual([told, engine.request], [["The avatar cannot be drawn: too large"], 0]);
+  assert.deepEqual([reported, engine.request], [["The avatar cannot be drawn: too large"], 0]);
 });

@@ -21,13 +21,13 @@ function arriving({ projecting = Promise.resolve(), put = async () => {} } = {})
       return shown;
     },
   };
-  const told = [];
-  const progressive = new ProgressiveLoad(engine, (handle) => told.push(handle));
-  return { progressive, engine, noted, told };
+  const reported = [];
+  const progressive = new ProgressiveLoad(engine, (handle) => reported.push(handle));
+  return { progressive, engine, noted, reported };
 }
 
 test("each part takes the place of the one before, the whole one the last", async () => {
-  const { progressive, engine, noted, told } = arriving();
+  const { progressive, engine, noted, reported } = arriving();
   for (const part of ["mesh", "coarse"]) {
     progressive.show(part);
     await settled();
@@ -38,7 +38,7 @@ test("each part takes the place of the one before, the whole one the last", asyn
     ["coarse", false],
     ["all", true],
   ]);
-  assert.deepEqual([engine.entries.length, told], [1, [handle, handle]]);
+  assert.deepEqual([engine.entries.length, reported], [1, [handle, handle]]);
 });
 
 test("of parts that came before the device can draw, the newest is shown", async () => {
@@ -89,23 +89,23 @@ test("a download that fails takes away what was shown of it, also where a part i
   assert.deepEqual(early.noted, []);
 });
 
-test("a part that was removed meanwhile is not told", async () => {
-  const { progressive, engine, told } = arriving({ put: async () => void (engine.removing = true) });
+test("a part that was removed meanwhile is not reported", async () => {
+  const { progressive, engine, reported } = arriving({ put: async () => void (engine.removing = true) });
   engine.entries.push = () => {};
   progressive.show("mesh");
   await settled();
-  assert.deepEqual(told, []);
+  assert.deepEqual(reported, []);
 });
 
-test("kernels that do not compile are told by the whole avatar, not by its parts", async () => {
+test("kernels that do not compile are reported by the whole avatar, not by its parts", async () => {
   const refused = async () => {
     throw new AvatarError("The graphics device refused.");
   };
-  const { progressive, told } = arriving({ projecting: Promise.reject(new Error("compile")), put: refused });
+  const { progressive, reported } = arriving({ projecting: Promise.reject(new Error("compile")), put: refused });
   progressive.show("mesh");
   await settled();
   await assert.rejects(progressive.complete("all"), /refused/);
-  assert.deepEqual(told, []);
+  assert.deepEqual(reported, []);
 });
 
 test("a part that breaks for another reason fails the whole", async () => {
