@@ -7,6 +7,7 @@ BIN := $(VENV)/bin
 DEMO := build/demo
 # Tests run in random order, by so many processes; each takes up to 2 GB.
 WORKERS ?= 2
+BIOME := tests/web/node_modules/.bin/biome
 PYTEST := $(BIN)/pytest --numprocesses $(WORKERS) --dist worksteal
 
 .PHONY: demo test test-long test-web test-files test-wheel gallery mutants docs check package npm wheel setup clean
@@ -65,6 +66,8 @@ check: setup
 	$(BIN)/python tools/gen_meta.py --check
 	$(BIN)/python tools/lint_upm.py
 	$(BIN)/python tools/pack_upm.py --check
+	@if command -v node >/dev/null && test -x $(BIOME); then $(BIOME) ci --error-on-warnings; \
+	else echo "JavaScript is not checked: it needs Node and npm ci --prefix tests/web"; fi
 
 # With nothing but Python.
 package:

@@ -346,7 +346,7 @@ def _assert_served(ran: "subprocess.Popen[str]", avatar_file: Path) -> None:
     found = re.fullmatch(r"a: http://127\.0\.0\.1:(\d+)/ \(Ctrl-C ends\)\n", said)
     assert found, (said, ran.stderr.read() if ran.poll() is not None else "")
     element = Tags(ask(int(found[1]), "/")[2].decode()).one("mua-avatar")
-    assert (element["src"], element["show"], element["stereo"]) == ("a.muaavatar", "splats,mesh", "")
+    assert (element["src"], element["show"], element["stereo"]) == ("a.muaavatar", "splats,template", "")
     assert (element["clip"], element["elevation"], element["orbit"]) == ("wave", "10", "-5")
     assert float(element["azimuth"] or "nan") == pytest.approx(30 + front(*opening(avatar_file, "wave")), abs=0.06)
     ran.send_signal(signal.SIGINT)

@@ -1,4 +1,4 @@
-"""AvatarRenderer in the stand-ins' player loop: program and avatars of its stories, and how one is told."""
+"""AvatarRenderer in the stand-ins' player loop: program and avatars of its stories, and how one is reported."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -48,13 +48,13 @@ def write_avatars(folder: Path) -> None:
 
 def tell(csharp: CSharp, program: Path, folder: Path, name: str, *files: str) -> Told:
     """What a story says, by key; all that it made is given back at its end."""
-    told: Told = {"log": []}
+    reported: Told = {"log": []}
     said = csharp.run(program, KERNELS, name, *(folder / f"{file}.muaavatar" for file in files))
     for line in said.splitlines():
         key, value = line.split("\t", 1)
-        told.setdefault(key, []).append(value)
-    assert (told["alive"], told["requests"], told["world"]) == (["0"], ["0"], ["0"]), told
-    return told
+        reported.setdefault(key, []).append(value)
+    assert (reported["alive"], reported["requests"], reported["world"]) == (["0"], ["0"], ["0"]), reported
+    return reported
 
 
 def counts(seed: int) -> list[int]:

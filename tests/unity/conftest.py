@@ -7,6 +7,7 @@ from pathlib import Path
 
 import component
 import engine_shaders
+import package_content
 import pipelines
 import pytest
 from csharp import CSharp
@@ -22,6 +23,12 @@ def csharp() -> CSharp:
         if shutil.which(tool) is None:
             pytest.skip(f"needs {tool}: Debian's package {package}, which tools/setup.sh installs, runs this test")
     return CSharp()
+
+
+@pytest.fixture(scope="session")
+def content(csharp: CSharp) -> package_content.Content:
+    """What the package's compiled assemblies hold."""
+    return package_content.read_content(csharp)
 
 
 @pytest.fixture(scope="session")

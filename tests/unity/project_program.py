@@ -18,11 +18,11 @@ class ProjectProgram:
 
     def tell(self, story: str, *arguments: object, packages: bool = True, sample: bool = True) -> Told:
         """Lines by their first word."""
-        told: Told = {}
+        reported: Told = {}
         for line in self._csharp.run(self._program(packages, sample), story, *arguments).splitlines():
             key, value = line.split("\t", 1)
-            told.setdefault(key, []).append(value)
-        return told
+            reported.setdefault(key, []).append(value)
+        return reported
 
     def _program(self, packages: bool, sample: bool) -> Path:
         if (packages, sample) not in self._built:

@@ -17,31 +17,39 @@ def program(csharp: CSharp) -> ProjectProgram:
     return ProjectProgram(csharp)
 
 
-def said(told: Told) -> str:
+def said(reported: Told) -> str:
     """What mua-deploy reads: the last line of the log, without its kind."""
-    return told["log"][-1].split(" ", 1)[1]
+    return reported["log"][-1].split(" ", 1)[1]
 
 
-def assert_project_is_left(told: Told) -> None:
-    assert (told["identifier"], told["bundle"], told["player"]) == (["org.example.own"], ["True"], ["False"])
+def assert_project_is_left(reported: Told) -> None:
+    assert (reported["identifier"], reported["bundle"], reported["player"]) == (
+        ["org.example.own"],
+        ["True"],
+        ["False"],
+    )
 
 
 def test_writes_the_apk_under_its_name_at_last(program: ProjectProgram, tmp_path: Path) -> None:
     apk = tmp_path / "Build" / "mua-player.apk"
-    told = program.tell("Builds", "Quest", "succeeds", "-muaOutput", apk)
-    assert told["ended"] == ["Done"]
+    reported = program.tell("Builds", "Quest", "succeeds", "-muaOutput", apk)
+    assert reported["ended"] == ["Done"]
     assert [path.name for path in apk.parent.iterdir()] == ["mua-player.apk"]
     assert apk.read_text() == "whole"
-    assert told["location"] == [str(apk.with_name("mua-player.apk.part") / "mua-player.apk")]
-    assert (told["scene"], told["scenes"]) == (["Assets/MUA/Player.unity"], ["Assets/MUA/Player.unity"])
-    assert (told["built as"], told["built as player"], told["options"]) == (["com.mua.player"], ["True"], ["None"])
-    assert re.fullmatch(rf"MUA-BUILD OK {re.escape(str(apk))}, 0\.0 MB, \d+ s", said(told))
-    assert_project_is_left(told)
+    assert reported["location"] == [str(apk.with_name("mua-player.apk.part") / "mua-player.apk")]
+    assert (reported["scene"], reported["scenes"]) == (["Assets/MUA/Player.unity"], ["Assets/MUA/Player.unity"])
+    assert (reported["built as"], reported["built as player"], reported["options"]) == (
+        ["com.mua.player"],
+        ["True"],
+        ["None"],
+    )
+    assert re.fullmatch(rf"MUA-BUILD OK {re.escape(str(apk))}, 0\.0 MB, \d+ s", said(reported))
+    assert_project_is_left(reported)
 
 
 def test_a_development_build_is_asked_for(program: ProjectProgram, tmp_path: Path) -> None:
-    told = program.tell("Builds", "Quest", "succeeds", "-muaDevelopment", "-muaOutput", tmp_path / "a.apk")
-    assert (told["ended"], told["options"]) == (["Done"], ["Development"])
+    reported = program.tell("Builds", "Quest", "succeeds", "-muaDevelopment", "-muaOutput", tmp_path / "a.apk")
+    assert (reported["ended"], reported["options"]) == (["Done"], ["Development"])
 
 
 @pytest.mark.parametrize(
@@ -54,12 +62,12 @@ def test_a_development_build_is_asked_for(program: ProjectProgram, tmp_path: Pat
 def test_a_build_that_fails_leaves_nothing(program: ProjectProgram, tmp_path: Path, does: str, sentence: str) -> None:
     apk = tmp_path / "mua-player.apk"
     apk.write_text("old")
-    told = program.tell("Builds", "Quest", does, "-muaOutput", apk)
-    assert told["ended"] == ["Failed"]
-    assert said(told) == f"MUA-BUILD FAIL {sentence}"
-    assert ERRORS[0].findall("\n".join(told["log"])) == [sentence]
+    reported = program.tell("Builds", "Quest", does, "-muaOutput", apk)
+    assert reported["ended"] == ["Failed"]
+    assert said(reported) == f"MUA-BUILD FAIL {sentence}"
+    assert ERRORS[0].findall("\n".join(reported["log"])) == [sentence]
     assert not list(tmp_path.iterdir())
-    assert_project_is_left(told)
+    assert_project_is_left(reported)
 
 
 @pytest.mark.parametrize(
@@ -78,10 +86,10 @@ def test_refuses_an_output_that_is_none(
 ) -> None:
     (tmp_path / "taken.apk").mkdir()
     (tmp_path / "file").write_text("in the way")
-    told = program.tell("Builds", "Quest", "succeeds", *(word.format(tmp_path) for word in words))
-    assert told["ended"] == ["Failed"]
-    assert said(told).startswith(f"MUA-BUILD FAIL {sentence.format(tmp_path)}")
-    assert "location" not in told
+    reported = program.tell("Builds", "Quest", "succeeds", *(word.format(tmp_path) for word in words))
+    assert reported["ended"] == ["Failed"]
+    assert said(reported).startswith(f"MUA-BUILD FAIL {sentence.format(tmp_path)}")
+    assert "location" not in reported
 
 
 def test_windows_gets_a_folder(program: ProjectProgram, tmp_path: Path) -> None:
@@ -89,19 +97,19 @@ def test_windows_gets_a_folder(program: ProjectProgram, tmp_path: Path) -> None:
     folder.mkdir()
     (folder / "mua-player.exe").write_text("old")
     (folder / "old.dll").write_text("old")
-    told = program.tell("Builds", "PcLink", "succeeds", "-muaOutput", folder)
-    assert told["ended"] == ["Done"]
+    reported = program.tell("Builds", "PcLink", "succeeds", "-muaOutput", folder)
+    assert reported["ended"] == ["Done"]
     assert [path.name for path in tmp_path.iterdir()] == ["Player"]
     assert {path.name for path in folder.iterdir()} == {"mua-player.exe", "mua-player.exe.symbols.zip"}
-    told = program.tell("Builds", "PcLink", "fails", "-muaOutput", f"{folder}/")
-    assert told["ended"] == ["Failed"]
+    reported = program.tell("Builds", "PcLink", "fails", "-muaOutput", f"{folder}/")
+    assert reported["ended"] == ["Failed"]
     assert not list(tmp_path.iterdir())
 
 
 def test_windows_never_deletes_what_is_not_the_player(program: ProjectProgram, tmp_path: Path) -> None:
     (tmp_path / "thesis.txt").write_text("mine")
-    told = program.tell("Builds", "PcLink", "succeeds", "-muaOutput", tmp_path)
-    assert said(told) == (
+    reported = program.tell("Builds", "PcLink", "succeeds", "-muaOutput", tmp_path)
+    assert said(reported) == (
         f"MUA-BUILD FAIL -muaOutput is {tmp_path}, which holds something else than the player, "
         "expected a new folder's name"
     )
@@ -110,12 +118,12 @@ def test_windows_never_deletes_what_is_not_the_player(program: ProjectProgram, t
 
 def test_brings_the_sample_and_packages_in_one_run(program: ProjectProgram, tmp_path: Path) -> None:
     words = ("Quest", "succeeds", "-muaOutput", tmp_path / "a.apk")
-    told = program.tell("Builds", *words, sample=False)
-    assert (told["ended"], told["imported"]) == (["Again"], ["True"])
-    assert AGAIN.findall(said(told)) == ["imported the sample VR Player"]
-    told = program.tell("Builds", *words, sample=False, packages=False)
-    assert (told["ended"], told["imported"]) == (["Again"], ["True"])
-    assert "com.unity.xr.openxr" in AGAIN.findall(said(told))[0]
+    reported = program.tell("Builds", *words, sample=False)
+    assert (reported["ended"], reported["imported"]) == (["Again"], ["True"])
+    assert AGAIN.findall(said(reported)) == ["imported the sample VR Player"]
+    reported = program.tell("Builds", *words, sample=False, packages=False)
+    assert (reported["ended"], reported["imported"]) == (["Again"], ["True"])
+    assert "com.unity.xr.openxr" in AGAIN.findall(said(reported))[0]
     assert not list(tmp_path.iterdir())
 
 
@@ -132,29 +140,29 @@ def test_brings_the_sample_and_packages_in_one_run(program: ProjectProgram, tmp_
 )
 def test_says_what_is_wrong_with_the_sample(program: ProjectProgram, tmp_path: Path, state: str, sentence: str) -> None:
     output = ("-muaOutput", tmp_path / "a.apk")
-    told = program.tell("BringsSample", state, "Quest", "succeeds", *output, sample=False)
-    assert (told["ended"], said(told)) == (["Failed"], f"MUA-BUILD FAIL {sentence}")
+    reported = program.tell("BringsSample", state, "Quest", "succeeds", *output, sample=False)
+    assert (reported["ended"], said(reported)) == (["Failed"], f"MUA-BUILD FAIL {sentence}")
 
 
 def test_a_project_that_cannot_be_set_up_is_not_built(program: ProjectProgram, tmp_path: Path) -> None:
-    told = program.tell("BuildsForOther", tmp_path / "a.apk")
-    assert told["ended"] == ["Failed"]
-    assert said(told) == (
+    reported = program.tell("BuildsForOther", tmp_path / "a.apk")
+    assert reported["ended"] == ["Failed"]
+    assert said(reported) == (
         "MUA-BUILD FAIL Build > Platform is StandaloneLinux64, expected Android: start Unity with -buildTarget Android"
     )
-    assert "location" not in told
+    assert "location" not in reported
 
 
 def test_ends_the_editor_with_the_outcome(program: ProjectProgram) -> None:
-    told = program.tell("RunsFromCommandLine")
-    assert told["exit"] == ["exit 1"]
-    assert said(told).startswith("MUA-BUILD FAIL the command line has no -muaOutput PATH")
+    reported = program.tell("RunsFromCommandLine")
+    assert reported["exit"] == ["exit 1"]
+    assert said(reported).startswith("MUA-BUILD FAIL the command line has no -muaOutput PATH")
 
 
 @pytest.mark.parametrize(("name", "output"), [("Quest", "a.apk"), ("PC Link", "Player")])
 def test_each_command_builds_for_its_platform(program: ProjectProgram, tmp_path: Path, name: str, output: str) -> None:
-    told = program.tell("RunsWithoutModule", name, "-muaOutput", tmp_path / output)
-    assert said(told).startswith(f"MUA-BUILD FAIL This editor cannot build for {name}: ")
+    reported = program.tell("RunsWithoutModule", name, "-muaOutput", tmp_path / output)
+    assert said(reported).startswith(f"MUA-BUILD FAIL This editor cannot build for {name}: ")
 
 
 def test_the_sample_has_what_the_build_looks_for() -> None:

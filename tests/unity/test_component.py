@@ -19,25 +19,26 @@ from frame_bounds import FRAME_ORDER
 
 
 def test_a_component_without_an_avatar_has_nothing_and_takes_nothing(story: Story) -> None:
-    told = story("IsPlain")
-    assert told["plain"] == ["Empty '' 0 '' 0"]
-    assert told["clip"] == ["0 of 0, 0 of 0, 0"]
-    assert told["outside"] == ["0"]
-    assert told["plays"] == ["True 1, Splats, Shadow, Automatic, True"]
-    assert told["bounds"] == ["1 2 3 0"]
-    assert told["log"] == []
+    reported = story("IsPlain")
+    assert reported["plain"] == ["Empty '' 0 '' 0"]
+    assert reported["clip"] == ["0 of 0, 0 of 0, 0"]
+    assert reported["outside"] == ["0"]
+    assert reported["plays"] == ["True 1, Splats, Shadow, Automatic, True"]
+    assert reported["bounds"] == ["1 2 3 0"]
+    assert reported["log"] == []
 
 
-def test_a_frame_allocates_nothing(story: Story) -> None:
-    assert story("Plays", "first")["allocated"] == ["0"]
+def test_a_frame_allocates_nothing_and_looks_up_no_name(story: Story) -> None:
+    reported = story("Plays", "first")
+    assert (reported["allocated"], reported["lookups"]) == (["0"], ["0"])
     assert story("FollowsRig", "first")["allocated"] == ["0"]
 
 
 def test_a_still_avatar_is_only_sorted(story: Story) -> None:
-    told = story("Plays", "first")
+    reported = story("Plays", "first")
     sorting = FRAME_ORDER[FRAME_ORDER.index("SplatProject") :]
-    assert told["frame"] == ["3"]
-    assert told["idle"] == [str(10 * len(sorting))]
+    assert reported["frame"] == ["3"]
+    assert reported["idle"] == [str(10 * len(sorting))]
 
 
 def test_an_avatar_stands_where_its_object_stands(story: Story) -> None:
@@ -45,17 +46,17 @@ def test_an_avatar_stands_where_its_object_stands(story: Story) -> None:
 
 
 def test_views_are_drawn_in_their_order(story: Story) -> None:
-    told = story("ShowsViews", "first")
-    assert told["order"] == [
+    reported = story("ShowsViews", "first")
+    assert reported["order"] == [
         "Hidden/MUA/Surface 0",
         "Hidden/MUA/Surface 1",
         "Hidden/MUA/Splat 0",
         "Hidden/MUA/Surface 2",
     ]
-    assert told["together"] == ["4 1"]  # draws of the camera, draws that wait for lights
-    assert told["shadow"] == ["0 1"]
-    assert told["nothing"] == ["0 0"]
-    assert told["log"] == []
+    assert reported["together"] == ["4 1"]  # draws of the camera, draws that wait for lights
+    assert reported["shadow"] == ["0 1"]
+    assert reported["nothing"] == ["0 0"]
+    assert reported["log"] == []
 
 
 def test_an_avatar_of_two_texels_has_no_geometry_and_shows_the_rest(story: Story, folder: Path) -> None:
@@ -67,76 +68,76 @@ def test_an_avatar_of_two_texels_has_no_geometry_and_shows_the_rest(story: Story
     geometry, appearance = (replace(b, static=b.static[:, :2]) for b in (avatar.geometry, avatar.appearance))
     avatar = replace(avatar, rig=replace(avatar.rig, texels=few), geometry=geometry, appearance=appearance)
     write(folder / "sparse.muaavatar", with_surface(avatar), storage="f16")
-    told = story("ShowsSparse", "sparse")
-    assert told["order"] == ["Hidden/MUA/Surface 1", "Hidden/MUA/Splat 0", "Hidden/MUA/Surface 2"]
-    assert told["log"] == []
+    reported = story("ShowsSparse", "sparse")
+    assert reported["order"] == ["Hidden/MUA/Surface 1", "Hidden/MUA/Splat 0", "Hidden/MUA/Surface 2"]
+    assert reported["log"] == []
 
 
 def test_a_file_without_a_surface_is_told_once_and_shows_the_rest(story: Story, folder: Path) -> None:
     write(folder / "bare.muaavatar", synthetic_avatar(1), storage="f16")
-    told = story("ShowsSparse", "bare")
-    assert told["order"] == ["Hidden/MUA/Surface 1", "Hidden/MUA/Splat 0", "Hidden/MUA/Surface 2"]
+    reported = story("ShowsSparse", "bare")
+    assert reported["order"] == ["Hidden/MUA/Surface 1", "Hidden/MUA/Splat 0", "Hidden/MUA/Surface 2"]
     sentence = "synthetic cannot show its Geometry: the file holds no surface to show; bake it again."
-    assert [line.rpartition("MUA: ")[2] for line in told["log"]] == [sentence]
+    assert [line.rpartition("MUA: ")[2] for line in reported["log"]] == [sentence]
 
 
 def test_splats_are_drawn_where_surfaces_cannot_be(story: Story) -> None:
-    told = story("LacksSurface", "first")
-    assert told["together"] == ["1 0"]
-    assert len(told["log"]) == 1
-    assert "cannot show its Shadow: the surface shader is missing" in told["log"][0]
+    reported = story("LacksSurface", "first")
+    assert reported["together"] == ["1 0"]
+    assert len(reported["log"]) == 1
+    assert "cannot show its Shadow: the surface shader is missing" in reported["log"][0]
 
 
 def test_avatars_come_and_go(story: Story) -> None:
-    told = story("Crowd", "first", "second")
+    reported = story("Crowd", "first", "second")
     first, second = (counts(seed)[0] for seed in (1, 2))
-    assert told["both"] == [str(first + second)]
-    assert told["one"] == [str(first)]
-    assert (told["fewer"], told["again"]) == (["1"], ["1"])
-    assert told["state"] == ["Ready Ready"]
-    assert told["log"] == []
+    assert reported["both"] == [str(first + second)]
+    assert reported["one"] == [str(first)]
+    assert (reported["fewer"], reported["again"]) == (["1"], ["1"])
+    assert reported["state"] == ["Ready Ready"]
+    assert reported["log"] == []
 
 
 def test_an_avatar_that_rests_is_posed_again_into_the_buffer_that_is_left(story: Story) -> None:
     """Splats of all avatars lie in one, which is another when one of them has gone."""
-    told = story("StaysBehind", "first", "second")
+    reported = story("StaysBehind", "first", "second")
     posed = FRAME_ORDER[FRAME_ORDER.index("BlendVertices") :]
-    assert told["left"] == [str(len(posed))]
-    assert told["idle"] == [str(len(posed) - posed.index("SplatProject"))]
+    assert reported["left"] == [str(len(posed))]
+    assert reported["idle"] == [str(len(posed) - posed.index("SplatProject"))]
 
 
 def test_an_avatar_out_of_view_rests_unless_its_shadow_may_be_seen(story: Story) -> None:
-    told = story("StandsOutOfView", "first", "second")
+    reported = story("StandsOutOfView", "first", "second")
     at_rest = len(FRAME_ORDER) - FRAME_ORDER.index("SplatProject")
-    assert told["both"] == told["back"] == [str(at_rest + 1)]  # each is projected
-    assert int(told["shadow"][0]) == at_rest + FRAME_ORDER.index("SplatProject")  # decoded and posed, not projected
-    assert told["one"] == told["far"] == told["without"] == [str(at_rest)]
-    assert told["stands"] == ["1"]  # where it would be seen
-    assert (told["none"], told["drawn"]) == (["0"], ["0"])
-    assert int(told["again"][0]) > at_rest + FRAME_ORDER.index("SplatProject")  # decodes what it missed
+    assert reported["both"] == reported["back"] == [str(at_rest + 1)]  # each is projected
+    assert int(reported["shadow"][0]) == at_rest + FRAME_ORDER.index("SplatProject")  # decoded and posed, not projected
+    assert reported["one"] == reported["far"] == reported["without"] == [str(at_rest)]
+    assert reported["stands"] == ["1"]  # where it would be seen
+    assert (reported["none"], reported["drawn"]) == (["0"], ["0"])
+    assert int(reported["again"][0]) > at_rest + FRAME_ORDER.index("SplatProject")  # decodes what it missed
 
 
 def test_a_game_that_starts_without_a_reload_keeps_its_avatars_and_says_anew_what_is_wrong(story: Story) -> None:
-    told = story("StartsWithoutReload", "first")
-    assert told["draws"] == ["10"]
-    assert len(told["log"]) == 2  # once in each game
-    assert all("nowhere.muaavatar" in line for line in told["log"])
+    reported = story("StartsWithoutReload", "first")
+    assert reported["draws"] == ["10"]
+    assert len(reported["log"]) == 2  # once in each game
+    assert all("nowhere.muaavatar" in line for line in reported["log"])
 
 
 def test_an_avatar_that_one_eye_sees_is_drawn_for_both(story: Story) -> None:
-    told, sorting = story("IsSeenByOneEye", "first"), len(FRAME_ORDER) - FRAME_ORDER.index("SplatProject")
-    assert told["seen"] == [f"True {sorting} True", f"True {sorting} True", "False 0 False"]
+    reported, sorting = story("IsSeenByOneEye", "first"), len(FRAME_ORDER) - FRAME_ORDER.index("SplatProject")
+    assert reported["seen"] == [f"True {sorting} True", f"True {sorting} True", "False 0 False"]
 
 
 def test_an_avatar_stands_where_its_parents_carry_it(story: Story) -> None:
-    told = story("HasParent", "first")
-    before, moved, turned = (np.array(line.split(), float) for line in told["box"])
+    reported = story("HasParent", "first")
+    before, moved, turned = (np.array(line.split(), float) for line in reported["box"])
     np.testing.assert_allclose(moved, np.add(before, [5, 1, 0, 0, 0, 0]), atol=1e-5)
     x, y, z, *_ = before
     np.testing.assert_allclose(turned[:3], [5 + z, 1 + y, -x], atol=1e-5)
     np.testing.assert_allclose(turned[3:], before[[5, 4, 3]], atol=1e-5)
-    assert int(told["turned"][0]) == len(FRAME_ORDER) - FRAME_ORDER.index("BlendVertices")
-    assert "only one scale for all axes" in told["message"][0]
+    assert int(reported["turned"][0]) == len(FRAME_ORDER) - FRAME_ORDER.index("BlendVertices")
+    assert "only one scale for all axes" in reported["message"][0]
 
 
 def test_an_avatar_casts_no_shadow_before_it_has_a_shape(story: Story) -> None:
@@ -144,28 +145,28 @@ def test_an_avatar_casts_no_shadow_before_it_has_a_shape(story: Story) -> None:
 
 
 def test_a_camera_draws_the_avatars_of_its_layers_alone(story: Story) -> None:
-    told = story("LiesOnLayers", "first", "second")
-    assert told["drawn"] == ["1", "1", "0"]
+    reported = story("LiesOnLayers", "first", "second")
+    assert reported["drawn"] == ["1", "1", "0"]
     whole = [counts(seed)[0] for seed in (1, 2)]
-    assert told["splats"] == [*(str(count + count % 2) for count in whole), "0"]
-    layer, away = told["shadow"][0].split()
+    assert reported["splats"] == [*(str(count + count % 2) for count in whole), "0"]
+    layer, away = reported["shadow"][0].split()
     assert (layer, float(away)) == ("7", pytest.approx(0, abs=1e-5))
-    assert float(told["shadow size"][0]) == pytest.approx(1, abs=1e-5)
+    assert float(reported["shadow size"][0]) == pytest.approx(1, abs=1e-5)
 
 
 def test_an_avatar_is_as_large_as_its_parents_make_it(story: Story) -> None:
-    told = story("IsScaled", "first")
-    plain, double, none, stretched, mirrored = (np.array(line.split(), float) for line in told["box"])
+    reported = story("IsScaled", "first")
+    plain, double, none, stretched, mirrored = (np.array(line.split(), float) for line in reported["box"])
     np.testing.assert_allclose(double, 2 * plain, atol=1e-5)
     assert np.abs(none).max() < 1e-3
     np.testing.assert_allclose(stretched, plain, atol=1e-5)  # at its own size
     np.testing.assert_allclose(mirrored[3:], plain[3:], atol=1e-5)
     posed = len(FRAME_ORDER) - FRAME_ORDER.index("BlendVertices")
-    assert told["posed"][1] == str(posed)
-    assert told["said"][:3] == [""] * 3
-    assert told["state"] == ["Ready"]
-    assert len(told["log"]) == 1
-    assert "only one scale for all axes" in told["log"][0]
+    assert reported["posed"][1] == str(posed)
+    assert reported["said"][:3] == [""] * 3
+    assert reported["state"] == ["Ready"]
+    assert len(reported["log"]) == 1
+    assert "only one scale for all axes" in reported["log"][0]
 
 
 def test_views_of_each_avatar_are_drawn_from_its_own_buffers(story: Story, folder: Path) -> None:

@@ -20,11 +20,11 @@ from frame_bounds import FEWER_THAN, FRAME_ORDER
 
 
 def test_a_clip_plays(story: Story) -> None:
-    told = story("Plays", "first")
-    assert told["state"] == ["Ready"]
-    assert told["clips"] == [" ".join(clip.name for clip in synthetic_avatar(1).clips)]
-    assert told["draws"] == [str(SECOND)]
-    assert told["log"] == []
+    reported = story("Plays", "first")
+    assert reported["state"] == ["Ready"]
+    assert reported["clips"] == [" ".join(clip.name for clip in synthetic_avatar(1).clips)]
+    assert reported["draws"] == [str(SECOND)]
+    assert reported["log"] == []
 
 
 def test_an_application_chooses_clip_frame_and_speed(story: Story, folder: Path) -> None:
@@ -33,26 +33,26 @@ def test_an_application_chooses_clip_frame_and_speed(story: Story, folder: Path)
     shorter = replace(clip, name="shorter", rotations=clip.rotations[:4], translations=clip.translations[:4])
     later = replace(clip, name="later", rotations=clip.rotations[4:], translations=clip.translations[4:])
     write(folder / "clips.muaavatar", replace(avatar, clips=(clip, shorter, later)))
-    told = story("Steers", "clips")
+    reported = story("Steers", "clips")
     counts = [len(resample(each, avatar.encoding.rate)) for each in (clip, shorter, later)]
-    assert (told["name"], told["progress"], told["frames"]) == ([avatar.name], ["1"], [str(counts[0])])
-    assert told["clip"] == [f"{index} 0 {counts[index]}" for index in (0, 2, 1, 0)]
-    assert told["still"] == ["0.25"]
-    assert float(told["half"][0]) == pytest.approx(36 / SECOND)
-    assert float(told["slow"][0]) == pytest.approx(0.5)
-    assert float(told["back"][0]) == pytest.approx(0.5)
-    assert told["posed"][0] != told["posed"][1]  # the first poses of two clips, one after the other
+    assert (reported["name"], reported["progress"], reported["frames"]) == ([avatar.name], ["1"], [str(counts[0])])
+    assert reported["clip"] == [f"{index} 0 {counts[index]}" for index in (0, 2, 1, 0)]
+    assert reported["still"] == ["0.25"]
+    assert float(reported["half"][0]) == pytest.approx(36 / SECOND)
+    assert float(reported["slow"][0]) == pytest.approx(0.5)
+    assert float(reported["back"][0]) == pytest.approx(0.5)
+    assert reported["posed"][0] != reported["posed"][1]  # the first poses of two clips, one after the other
     missing = f"the avatar has no clip nobody's; its clips are {clip.name}, shorter, later."
-    assert told["picked"] == [f"0 {missing}", "2 "]
-    assert [line.rpartition(": ")[2] for line in told["log"]] == [missing]
+    assert reported["picked"] == [f"0 {missing}", "2 "]
+    assert [line.rpartition(": ")[2] for line in reported["log"]] == [missing]
 
 
 def test_an_avatar_says_how_far_outside_of_training_its_pose_is(story: Story, folder: Path) -> None:
-    told, file = story("LeavesTraining", "first"), folder / "first.muaavatar"
+    reported, file = story("LeavesTraining", "first"), folder / "first.muaavatar"
     expected = [outside_of_training(file, frame) for frame in (2, 5, 0)]
     assert min(np.abs(np.diff(expected))) > 0.01
-    assert [float(number) for number in told["outside"]] == pytest.approx(expected, rel=1e-6)
-    assert told["loading"] == ["0"]
+    assert [float(number) for number in reported["outside"]] == pytest.approx(expected, rel=1e-6)
+    assert reported["loading"] == ["0"]
 
 
 def test_an_avatar_is_decoded_at_its_own_rate_and_posed_in_every_frame(story: Story) -> None:
@@ -70,10 +70,10 @@ def test_each_avatar_starts_over_where_its_own_clip_ends(story: Story, folder: P
     clip = avatar.clips[0]
     short = replace(clip, rotations=clip.rotations[:3], translations=clip.translations[:3])
     write(folder / "short.muaavatar", replace(avatar, clips=(short,)), storage="f16")
-    told = story("EndsEarly", "short", "first")
+    reported = story("EndsEarly", "short", "first")
     frames = len(synthetic_avatar(1).clips[0])
-    assert told["counts"] == [f"3 {frames}"]
-    assert told["frames"] == [f"{at % 3} {at % frames}" for at in (4, 8, 12)]  # 12 displayed frames are 4 of a clip
+    assert reported["counts"] == [f"3 {frames}"]
+    assert reported["frames"] == [f"{at % 3} {at % frames}" for at in (4, 8, 12)]  # 12 displayed frames are 4 of a clip
 
 
 def test_a_clip_holds_its_last_frame_until_it_starts_over(story: Story) -> None:

@@ -15,8 +15,8 @@ def test_a_load_asks_once_for_the_packages_resources(story: Story) -> None:
 
 
 def test_an_avatar_destroyed_while_it_uploads_leaves_nothing(story: Story) -> None:
-    told = story("GoesMidUpload", "wide")
-    assert (told["state"], told["progress"], told["held"]) == (["Loading"], ["1"], ["1"])
+    reported = story("GoesMidUpload", "wide")
+    assert (reported["state"], reported["progress"], reported["held"]) == (["Loading"], ["1"], ["1"])
 
 
 def test_progress_rises_from_nothing_to_all(story: Story) -> None:
@@ -36,21 +36,21 @@ def test_a_file_is_found_in_both_folders_and_in_an_asset(story: Story, folder: P
     """Persistent data before what came with the application."""
     (folder / "others").mkdir()
     write(folder / "others" / "first.muaavatar", replace(synthetic_avatar(2), name="another"), storage="f16")
-    told = story("FindsFiles", "first")
-    assert told["state"] == ["Ready"] * 3
-    assert told["of both"] == [synthetic_avatar(1).name]
+    reported = story("FindsFiles", "first")
+    assert reported["state"] == ["Ready"] * 3
+    assert reported["of both"] == [synthetic_avatar(1).name]
 
 
 def test_a_file_inside_an_android_package_is_requested(story: Story) -> None:
-    told = story("Streams", "first")
-    assert told["state"] == ["Ready", "Failed"]
-    assert len(told["log"]) == 1
-    assert "404" in told["log"][0]
+    reported = story("Streams", "first")
+    assert reported["state"] == ["Ready", "Failed"]
+    assert len(reported["log"]) == 1
+    assert "404" in reported["log"][0]
 
 
 def test_as_many_buffers_as_a_kernel_and_a_draw_take_are_enough(story: Story) -> None:
-    told = story("HasJustEnoughBuffers", "first")
-    assert (told["state"], told["log"]) == (["Ready"], [])
+    reported = story("HasJustEnoughBuffers", "first")
+    assert (reported["state"], reported["log"]) == (["Ready"], [])
 
 
 @pytest.mark.parametrize(
@@ -69,34 +69,34 @@ def test_as_many_buffers_as_a_kernel_and_a_draw_take_are_enough(story: Story) ->
     ],
 )
 def test_what_is_wrong_is_said_once(story: Story, name: str, file: str, words: str) -> None:
-    told = story(name, file)
-    assert told["state"] == ["Failed"]
-    assert told["held"] == ["0"]
-    assert len(told["log"]) == 1, told["log"]
-    assert told["log"][0].startswith("Error MUA: ")
-    assert words in told["log"][0]
-    assert "One or more errors" not in told["log"][0]
-    assert told["log"][0].endswith(told["message"][0])
+    reported = story(name, file)
+    assert reported["state"] == ["Failed"]
+    assert reported["held"] == ["0"]
+    assert len(reported["log"]) == 1, reported["log"]
+    assert reported["log"][0].startswith("Error MUA: ")
+    assert words in reported["log"][0]
+    assert "One or more errors" not in reported["log"][0]
+    assert reported["log"][0].endswith(reported["message"][0])
 
 
 def test_a_server_without_graphics_is_told_nothing(story: Story) -> None:
     """Unity's -nographics; who asks the component learns why it shows nothing."""
-    told = story("LacksGraphics", "first")
-    assert (told["state"], told["held"], told["log"]) == (["Failed"], ["0"], [])
-    assert "no graphics device" in told["message"][0]
+    reported = story("LacksGraphics", "first")
+    assert (reported["state"], reported["held"], reported["log"]) == (["Failed"], ["0"], [])
+    assert "no graphics device" in reported["message"][0]
 
 
 def test_an_avatar_that_has_no_room_beside_others_goes_alone(story: Story) -> None:
-    told = story("LacksMemoryForTwo", "first")
-    assert told["state"] == ["Ready Failed"]
-    assert told["shown"] == ["1"]
-    assert len(told["log"]) == 1, told["log"]
-    assert "splats" in told["message"][0]
+    reported = story("LacksMemoryForTwo", "first")
+    assert reported["state"] == ["Ready Failed"]
+    assert reported["shown"] == ["1"]
+    assert len(reported["log"]) == 1, reported["log"]
+    assert "splats" in reported["message"][0]
 
 
 def test_one_avatar_takes_the_place_of_another(story: Story) -> None:
-    told, first, second = story("ShowsOneAfterAnother", "first", "second"), counts(1)[0], counts(2)[0]
-    assert told["shown"] == [
+    reported, first, second = story("ShowsOneAfterAnother", "first", "second"), counts(1)[0], counts(2)[0]
+    assert reported["shown"] == [
         f"Ready {first} False",
         f"Ready {second} True",
         f"Ready {first} False",
@@ -105,18 +105,18 @@ def test_one_avatar_takes_the_place_of_another(story: Story) -> None:
         "Empty 0 False",
         f"Ready {second} True",
     ]
-    assert told["message"][0].endswith("it is no avatar.")
+    assert reported["message"][0].endswith("it is no avatar.")
 
 
 def test_a_scene_keeps_every_setting_of_a_component(story: Story) -> None:
-    assert story("IsCopied", "first")["copy"] == ["Ready 0.5 Mesh Half False True"]
+    assert story("IsCopied", "first")["copy"] == ["Ready 0.5 Template Half False True"]
 
 
 def test_bytes_load_as_their_file_does(story: Story) -> None:
-    told = story("LoadsBytes", "first", "second", "damaged")
+    reported = story("LoadsBytes", "first", "second", "damaged")
     name = synthetic_avatar(2).name
-    assert told["state"] == [f"Ready {name}", "Empty", f"Ready {name}", "Failed ", "Failed ", "Empty"]
-    of_bytes, of_file = told["message"]
+    assert reported["state"] == [f"Ready {name}", "Empty", f"Ready {name}", "Failed ", "Failed ", "Empty"]
+    of_bytes, of_file = reported["message"]
     assert of_bytes.startswith("downloaded: ")
     assert of_bytes.partition(": ")[2] == of_file.partition(".muaavatar: ")[2] != ""
 

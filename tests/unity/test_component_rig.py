@@ -30,62 +30,62 @@ def test_an_inactive_joint_counts_as_missing(story: Story) -> None:
 
 
 def test_transforms_give_the_pose_wherever_their_root_stands(story: Story) -> None:
-    told = story("FollowsRig", "first")
-    assert float(told["turned"][0]) < TURNED
-    assert float(told["translated"][0]) < TRANSLATED
+    reported = story("FollowsRig", "first")
+    assert float(reported["turned"][0]) < TURNED
+    assert float(reported["translated"][0]) < TRANSLATED
 
 
 def test_an_avatar_whose_rig_rests_is_only_sorted(story: Story) -> None:
     """Once its window holds nothing but the pose in which it rests: as long as that is, it is decoded."""
-    told = story("RigRests", "first")
+    reported = story("RigRests", "first")
     sorting = len(FRAME_ORDER[FRAME_ORDER.index("SplatProject") :])
     posed = len(FRAME_ORDER[FRAME_ORDER.index("BlendVertices") :])
     window = synthetic_avatar(1).encoding.window
-    assert told["settling"] == [str(len(FRAME_ORDER) + (SECOND - 1) * sorting)]  # the first frame fills the window
-    assert told["idle"] == [str(10 * sorting)] * 3
+    assert reported["settling"] == [str(len(FRAME_ORDER) + (SECOND - 1) * sorting)]  # the first frame fills the window
+    assert reported["idle"] == [str(10 * sorting)] * 3
     for moved in ("woken", "stepped"):
-        decodes, reposes = divmod(int(told[moved][0]) - SECOND * sorting, len(FRAME_ORDER) - sorting)
+        decodes, reposes = divmod(int(reported[moved][0]) - SECOND * sorting, len(FRAME_ORDER) - sorting)
         assert decodes == window
         assert reposes in (0, posed - sorting)  # the frame that moved, where it is none of the avatar's own rate
-    assert told["carried"] == [str(posed)]
-    assert told["left"] == [str(len(FRAME_ORDER))]
+    assert reported["carried"] == [str(posed)]
+    assert reported["left"] == [str(len(FRAME_ORDER))]
 
 
 def test_a_rig_that_is_picked_in_the_inspector_is_followed(story: Story) -> None:
-    told = story("RigIsPicked", "first")
+    reported = story("RigIsPicked", "first")
     sorting = len(FRAME_ORDER[FRAME_ORDER.index("SplatProject") :])
-    assert told["idle"] == [str(10 * sorting)]
-    assert int(told["woken"][0]) > 10 * sorting
+    assert reported["idle"] == [str(10 * sorting)]
+    assert int(reported["woken"][0]) > 10 * sorting
 
 
 def test_a_rig_that_rested_is_remembered_resting(story: Story) -> None:
-    told = story("RemembersRest", "first")
-    assert told["changes"] == ["1", "1"]
-    assert (told["fresh"], told["rests"]) == (["1"], ["1"])
+    reported = story("RemembersRest", "first")
+    assert reported["changes"] == ["1", "1"]
+    assert (reported["fresh"], reported["rests"]) == (["1"], ["1"])
 
 
 def test_the_window_takes_a_pose_in_each_frame_of_the_avatars_rate(story: Story) -> None:
     """On a display three times as fast; it goes on after 3 frames without a pose, starts anew after 4 or going back."""
-    told = story("WindowTakesTurns", "first")
+    reported = story("WindowTakesTurns", "first")
     window = synthetic_avatar(1).encoding.window
     assert window == 3
-    assert told["window"] == ["12 9 6", "13 12 9", "14 14 14", "15 14 14", "16 16 16"]
-    assert [float(number) for number in told["before"]] == [pytest.approx(0.5), pytest.approx(1)]
-    assert told["steady"] == ["300"]  # one pose in each frame
-    assert told["other clip"] == ["1"]  # is another window, though both play their first frame
+    assert reported["window"] == ["12 9 6", "13 12 9", "14 14 14", "15 14 14", "16 16 16"]
+    assert [float(number) for number in reported["before"]] == [pytest.approx(0.5), pytest.approx(1)]
+    assert reported["steady"] == ["300"]  # one pose in each frame
+    assert reported["other clip"] == ["1"]  # is another window, though both play their first frame
 
 
 def test_a_rig_that_is_destroyed_is_said_once(story: Story) -> None:
-    told = story("FollowsRig", "first")
-    assert told["state"] == ["Ready"]
-    assert len(told["log"]) == 1
-    assert "destroyed" in told["log"][0]
+    reported = story("FollowsRig", "first")
+    assert reported["state"] == ["Ready"]
+    assert len(reported["log"]) == 1
+    assert "destroyed" in reported["log"][0]
 
 
 def test_missing_joints_are_said_once(story: Story) -> None:
-    told = story("LacksJoint", "first")
-    assert told["state"] == ["Ready"]
-    some, root = told["log"]
+    reported = story("LacksJoint", "first")
+    assert reported["state"] == ["Ready"]
+    some, root = reported["log"]
     assert synthetic_avatar(1).rig.skeleton.names[-1] in some
     assert "root joint" in root
 

@@ -41,11 +41,11 @@ def program(csharp: CSharp) -> Path:
 @pytest.fixture
 def story(csharp: CSharp, program: Path) -> Story:
     def tell(name: str, *files: Path) -> Told:
-        told: Told = {"log": [], "dialog": [], "undo": [], "saved": [], "object": []}
+        reported: Told = {"log": [], "dialog": [], "undo": [], "saved": [], "object": []}
         for line in csharp.run(program, ROOT / "ComputeShaders", name, *files).splitlines():
             key, *values = line.split("\t")
-            told.setdefault(key, []).append(values)
-        return told
+            reported.setdefault(key, []).append(values)
+        return reported
 
     return tell
 
@@ -61,28 +61,28 @@ def sound(tmp_path: Path) -> Path:
 
 
 def test_a_sound_file_becomes_an_asset_of_its_bytes(story: Story, sound: Path) -> None:
-    told = story("Imports", sound)
-    assert told["asset"] == [["Walking Woman", str(sound.stat().st_size), "", "thumbnail avatar", "30 x 40"]]
-    assert told["error"] == [[""]]
-    assert told["summary"] == [["synthetic"]]
-    assert told["textures"] == [["1", "1"]]  # one, without smaller copies of itself
+    reported = story("Imports", sound)
+    assert reported["asset"] == [["Walking Woman", str(sound.stat().st_size), "", "thumbnail avatar", "30 x 40"]]
+    assert reported["error"] == [[""]]
+    assert reported["summary"] == [["synthetic"]]
+    assert reported["textures"] == [["1", "1"]]  # one, without smaller copies of itself
     kept = story("Keeps", sound)
     assert [kept[key] for key in ("content", "summary", "thumbnail")] == [[["True"]]] * 3
 
 
 def test_a_file_inside_a_package_is_imported(story: Story, sound: Path) -> None:
-    told = story("ImportsFromPackage", sound)
-    assert told["asset"] == story("Imports", sound)["asset"]
-    assert told["error"] == [[""]]
+    reported = story("ImportsFromPackage", sound)
+    assert reported["asset"] == story("Imports", sound)["asset"]
+    assert reported["error"] == [[""]]
 
 
 @pytest.mark.parametrize("thumbnail", [b"", b"\x89PNG\r\n\x1a\n and nothing"], ids=["none", "no picture"])
 def test_a_file_without_a_thumbnail_has_the_editors_own_icon(story: Story, tmp_path: Path, thumbnail: bytes) -> None:
     path = tmp_path / "a.muaavatar"
     write(path, replace(synthetic_avatar(), thumbnail=thumbnail), storage="f32")
-    told = story("Imports", path)
-    [asset] = told["asset"]
-    assert told["textures"] == [["0", "0"]]
+    reported = story("Imports", path)
+    [asset] = reported["asset"]
+    assert reported["textures"] == [["0", "0"]]
     assert asset == ["a", str(path.stat().st_size), "", "avatar", ""]
     assert story("Inspects", path)["gui"][0] == ["title synthetic"]
 
@@ -95,9 +95,9 @@ def test_an_unsound_file_becomes_an_asset_that_says_why(story: Story, tmp_path: 
     files = [tmp_path / f"{i}.muaavatar" for i in range(len(bad))]
     for file, damaged in zip(files, bad, strict=True):
         file.write_bytes(damaged)
-    told = story("Imports", *files)
-    assert told["log"] == []
-    for file, field, asset, [error] in zip(files, fields, told["asset"], told["error"], strict=True):
+    reported = story("Imports", *files)
+    assert reported["log"] == []
+    for file, field, asset, [error] in zip(files, fields, reported["asset"], reported["error"], strict=True):
         name, length, fault, parts, icon = asset
         assert (name, length, parts, icon) == (file.stem, "0", "avatar", "")
         assert fault.startswith(field + ": " if field else "")
@@ -109,12 +109,12 @@ def test_an_empty_file_and_one_that_vanishes_say_so(story: Story, tmp_path: Path
     empty, gone, folder = (tmp_path / f"{name}.muaavatar" for name in ("empty", "gone", "folder"))
     empty.touch()
     folder.mkdir()
-    told = story("Imports", empty, gone, folder)
-    faults = [asset[2] for asset in told["asset"]]
+    reported = story("Imports", empty, gone, folder)
+    faults = [asset[2] for asset in reported["asset"]]
     assert "0 bytes" in faults[0]
     assert all("cannot be read" in fault for fault in faults[1:])
-    assert all(error.count("|") == 0 and error.startswith("MUA: ") for [error] in told["error"])
-    assert told["log"] == []
+    assert all(error.count("|") == 0 and error.startswith("MUA: ") for [error] in reported["error"])
+    assert reported["log"] == []
 
 
 def test_the_inspector_shows_tables_or_the_fault(story: Story, sound: Path, tmp_path: Path) -> None:
@@ -129,8 +129,8 @@ def test_the_inspector_shows_tables_or_the_fault(story: Story, sound: Path, tmp_
 
 
 def test_the_demo_scene_shows_the_avatar_to_its_camera(story: Story, sound: Path) -> None:
-    told = story("MakesScene", sound)
-    objects = {name: (kinds, [float(value) for value in numbers]) for name, kinds, *numbers, _ in told["object"]}
+    reported = story("MakesScene", sound)
+    objects = {name: (kinds, [float(value) for value in numbers]) for name, kinds, *numbers, _ in reported["object"]}
     assert {name: kinds for name, (kinds, _) in objects.items()} == {
         "Ground": "MeshFilter MeshRenderer",
         "Sun": "Light",
@@ -141,61 +141,66 @@ def test_the_demo_scene_shows_the_avatar_to_its_camera(story: Story, sound: Path
     assert camera[2] > 3  # in front of the character, which looks along +Z and is 3 m tall
     assert camera[3:] == pytest.approx([0, 0, -1], abs=1e-5)
     assert objects["Sun"][1][4] < 0  # shines down
-    assert told["shows"] == [["Walking Woman"]]
-    assert told["selected"] == [["Walking Woman"]]
-    assert told["saved"] == [["Assets/MUA Demo.unity"]]
-    assert told["dialog"] == []
+    assert reported["shows"] == [["Walking Woman"]]
+    assert reported["selected"] == [["Walking Woman"]]
+    assert reported["saved"] == [["Assets/MUA Demo.unity"]]
+    assert reported["dialog"] == []
 
 
 def test_a_demo_scene_is_not_replaced_without_consent(story: Story, sound: Path) -> None:
-    told = story("KeepsScene", sound)
-    assert (told["object"], told["saved"]) == ([], [])
-    assert told["dialog"] == [["Assets/MUA Demo.unity exists. Replace it?"]]
+    reported = story("KeepsScene", sound)
+    assert (reported["object"], reported["saved"]) == ([], [])
+    assert reported["dialog"] == [["Assets/MUA Demo.unity exists. Replace it?"]]
 
 
 def test_without_an_avatar_the_menu_says_what_to_do(story: Story, tmp_path: Path) -> None:
-    told = story("HasNoAvatar")
-    assert (told["object"], told["saved"]) == ([], [])
-    assert ".muaavatar" in told["dialog"][0][0]
+    reported = story("HasNoAvatar")
+    assert (reported["object"], reported["saved"]) == ([], [])
+    assert ".muaavatar" in reported["dialog"][0][0]
     unsound = tmp_path / "bad.muaavatar"
     unsound.touch()
-    assert story("MakesScene", unsound)["dialog"] == told["dialog"]
+    assert story("MakesScene", unsound)["dialog"] == reported["dialog"]
 
 
 def test_an_avatar_is_made_below_the_object_clicked_and_can_be_undone(story: Story, sound: Path) -> None:
-    told = story("MakesObject", sound)
-    [made] = [thing for thing in told["object"] if thing[0] == "Walking Woman"]
+    reported = story("MakesObject", sound)
+    [made] = [thing for thing in reported["object"] if thing[0] == "Walking Woman"]
     assert [made[1], made[-1]] == ["AvatarRenderer", "parent"]
     assert [float(value) for value in made[2:5]] == [1, 2, 3]
-    assert told["undo"] == [["Create Walking Woman"]]
-    assert told["selected"] == [["Walking Woman"]]
+    assert reported["undo"] == [["Create Walking Woman"]]
+    assert reported["selected"] == [["Walking Woman"]]
     assert [thing[0] for thing in story("MakesObject")["object"]] == ["parent", "MUA Avatar"]
 
 
 def test_a_second_avatar_has_another_name_and_lies_in_the_stage_that_is_open(story: Story, sound: Path) -> None:
-    told = story("MakesTwins", sound)
-    assert [thing[0] for thing in told["object"]] == ["parent", "Walking Woman", "Walking Woman (1)", "Walking Woman"]
-    assert told["staged"] == [["Walking Woman"], ["Walking Woman"]]
+    reported = story("MakesTwins", sound)
+    assert [thing[0] for thing in reported["object"]] == [
+        "parent",
+        "Walking Woman",
+        "Walking Woman (1)",
+        "Walking Woman",
+    ]
+    assert reported["staged"] == [["Walking Woman"], ["Walking Woman"]]
 
 
 def test_an_avatar_is_dropped_into_the_scene(story: Story, sound: Path) -> None:
-    told = story("Drops", sound)
-    assert (told["hover"], told["other"], told["drop"]) == ([["Copy", "0"]], [["None", "None"]], [["Copy"]])
-    [made] = told["object"]
+    reported = story("Drops", sound)
+    assert (reported["hover"], reported["other"], reported["drop"]) == ([["Copy", "0"]], [["None", "None"]], [["Copy"]])
+    [made] = reported["object"]
     assert [float(value) for value in made[2:5]] == [1, 0, 2]
 
 
 def test_an_avatar_is_dropped_on_the_hierarchy(story: Story, sound: Path) -> None:
-    told = story("DropsOnRows", sound)
-    assert told["drop"] == [["Copy"]] * 4
-    assert told["parent"] == [["row", "3"], ["row", "3"], ["none", "0"], ["row", "3"]]
-    assert told["other"] == [["None"]]
+    reported = story("DropsOnRows", sound)
+    assert reported["drop"] == [["Copy"]] * 4
+    assert reported["parent"] == [["row", "3"], ["row", "3"], ["none", "0"], ["row", "3"]]
+    assert reported["other"] == [["None"]]
 
 
 def test_the_scene_view_frames_and_picks_what_is_drawn(story: Story, sound: Path) -> None:
-    told = story("IsFramed", sound)
-    assert (told["one"], told["both"]) == ([["True", "True"]], [["True", "True"]])
-    assert (told["clicked"], told["empty"]) == ([["1", "True"]], [["1", "False"]])
+    reported = story("IsFramed", sound)
+    assert (reported["one"], reported["both"]) == ([["True", "True"]], [["True", "True"]])
+    assert (reported["clicked"], reported["empty"]) == ([["1", "True"]], [["1", "False"]])
 
 
 def test_an_opened_prefab_is_apart_from_the_scene(story: Story, sound: Path) -> None:
@@ -223,17 +228,17 @@ def test_a_component_is_scrubbed_in_its_inspector(story: Story, tmp_path: Path) 
     avatar = synthetic_avatar()
     path = tmp_path / "a.muaavatar"
     write(path, replace(avatar, clips=(avatar.clips[0], replace(avatar.clips[0], name="nod"))), storage="f16")
-    told = story("Scrubs", path)
+    reported = story("Scrubs", path)
     last = len(avatar.clips[0]) - 1
-    first, chosen, scrubbed, again, playing, _, failed = (line for [line] in told["gui"])
+    first, chosen, scrubbed, again, playing, _, failed = (line for [line] in reported["gui"])
     assert first == f"popup wave of wave, nod; slider 0 of 0 to {last}"
     assert chosen == first
-    assert told["clip"] == [["1", "True"]]
+    assert reported["clip"] == [["1", "True"]]
     assert scrubbed == f"popup nod of wave, nod; slider 0 of 0 to {last}"
     assert again == scrubbed.replace("slider 0", "slider 3")
-    assert told["asked"] == [["1", "1"]] * 2  # of the editor that does not play: a frame and its picture, once
-    assert told["frame"] == [["3"]]
-    assert told["playing"] == [["False"]]
+    assert reported["asked"] == [["1", "1"]] * 2  # of the editor that does not play: a frame and its picture, once
+    assert reported["frame"] == [["3"]]
+    assert reported["playing"] == [["False"]]
     outside = 100 * outside_of_training(path, 3)
     assert playing.split("; ")[1:] == [
         "toggle Playing True",
@@ -241,7 +246,7 @@ def test_a_component_is_scrubbed_in_its_inspector(story: Story, tmp_path: Path) 
         f"value Outside Training: {outside:.0f} %",
     ]
     assert failed.startswith("property nod; Error ")
-    assert told["alive"] == [["0"]]
+    assert reported["alive"] == [["0"]]
 
 
 def test_several_components_have_no_clip_in_common_to_scrub(story: Story, sound: Path) -> None:
@@ -254,9 +259,9 @@ def test_several_components_have_no_clip_in_common_to_scrub(story: Story, sound:
 def test_a_file_that_changes_is_shown_anew(story: Story, sound: Path, tmp_path: Path) -> None:
     other = tmp_path / "other.muaavatar"
     write(other, replace(synthetic_avatar(), name="another"), storage="f16")
-    told = story("Reimports", sound, other)
-    assert told["name"] == [["synthetic"] * 2, ["another"] * 2]
-    assert told["alive"] == [["0"]]
+    reported = story("Reimports", sound, other)
+    assert reported["name"] == [["synthetic"] * 2, ["another"] * 2]
+    assert reported["alive"] == [["0"]]
 
 
 def test_the_menu_is_complete(story: Story) -> None:

@@ -51,7 +51,7 @@ def web_reader() -> Iterator[Reader]:
 
 
 def blocks() -> list[Any]:
-    """The seeds of a short run, and those of a long one in parts that can be told apart."""
+    """The seeds of a short run, and those of a long one in parts that can be reported apart."""
     return [range(FEW), *(pytest.param(range(k, k + BLOCK), marks=pytest.mark.long) for k in range(0, ALL, BLOCK))]
 
 
@@ -90,7 +90,7 @@ def test_readers_agree_on_mutants_and_what_they_accept_is_finite(
 
 @contextmanager
 def telling(named: str) -> Iterator[None]:
-    """Whatever ends the block is told with this name."""
+    """Whatever ends the block is reported with this name."""
     try:
         yield
     except Exception as error:

@@ -31,24 +31,24 @@ def program(csharp: CSharp) -> Path:
 @pytest.fixture
 def story(csharp: CSharp, program: Path) -> Story:
     def tell(name: str, *, package: object = PACKAGE, recording: object = "-", answered: object = "-") -> Told:
-        told: Told = {}
+        reported: Told = {}
         for line in csharp.run(program, package, KERNELS, recording, answered, name).splitlines():
             key, _, value = line.partition("\t")
-            told.setdefault(key, []).append(value)
-        assert told["alive"] == ["0"], told
-        return told
+            reported.setdefault(key, []).append(value)
+        assert reported["alive"] == ["0"], reported
+        return reported
 
     return tell
 
 
-def outcomes(told: Told) -> dict[str, str]:
+def outcomes(reported: Told) -> dict[str, str]:
     """What came of each test."""
-    return {key.removeprefix("test "): value for key, (value, *_) in told.items() if key.startswith("test ")}
+    return {key.removeprefix("test "): value for key, (value, *_) in reported.items() if key.startswith("test ")}
 
 
 @pytest.fixture
 def answered(device: Device, tmp_path: Path) -> Callable[[Story, str], Told]:
-    """A story told again, with what its recording makes of the buffers that it reads."""
+    """A story reported again, with what its recording makes of the buffers that it reads."""
 
     def tell(story: Story, name: str) -> Told:
         recording, folder = tmp_path / "recorded", tmp_path / "answers"
@@ -92,9 +92,9 @@ def test_every_play_mode_test_passes(story: Story) -> None:
 
 
 def test_the_menu_says_how_many_cases_passed(story: Story, answered: Callable[[Story, str], Told]) -> None:
-    told = answered(story, "Menu")
-    assert told["dialog"] == [f"{CASES} of {CASES} cases passed on stand-in."]
-    assert told["Log"][-1] == f"MUA-SELFTEST editor PASS {CASES}/{CASES}"
+    reported = answered(story, "Menu")
+    assert reported["dialog"] == [f"{CASES} of {CASES} cases passed on stand-in."]
+    assert reported["Log"][-1] == f"MUA-SELFTEST editor PASS {CASES}/{CASES}"
     assert story("Menu")["dialog"] == [f"0 of {CASES} cases passed on stand-in; the console lists the others."]
 
 
@@ -107,12 +107,12 @@ def test_builds_of_the_player_hold_the_golden_files(story: Story, tmp_path: Path
     packed = tmp_path / "package" / "Tests" / "Golden~"
     shutil.copytree(gen_golden.GOLDEN, packed)
     for package, folder in ((PACKAGE, gen_golden.GOLDEN), (tmp_path / "package", packed)):
-        told = story("Builds", package=package)
-        assert sorted(told["of the player"]) == sorted(f"MuaGolden/{name} {folder / name}" for name in names)
-        assert "of another" not in told
+        reported = story("Builds", package=package)
+        assert sorted(reported["of the player"]) == sorted(f"MuaGolden/{name} {folder / name}" for name in names)
+        assert "of another" not in reported
 
 
 def test_a_build_without_golden_files_says_so(story: Story) -> None:
-    told = story("Builds", package="-")
-    assert "of the player" not in told
-    assert "without the self-test's files" in told["Warning"][0]
+    reported = story("Builds", package="-")
+    assert "of the player" not in reported
+    assert "without the self-test's files" in reported["Warning"][0]

@@ -70,16 +70,16 @@ def program(csharp: CSharp) -> ProjectProgram:
 
 @pytest.mark.parametrize("platform", PLATFORMS)
 def test_a_new_project_is_made_right_once(program: ProjectProgram, platform: str) -> None:
-    told = program.tell("SetsUp", platform)
-    assert len(told["log"]) == len(MADE[platform])
-    assert all(map(CHANGE.fullmatch, told["log"]))
-    assert all(map(FAULT.fullmatch, told["before"]))
-    assert "after" not in told
-    assert told["saved"] == [
+    reported = program.tell("SetsUp", platform)
+    assert len(reported["log"]) == len(MADE[platform])
+    assert all(map(CHANGE.fullmatch, reported["log"]))
+    assert all(map(FAULT.fullmatch, reported["before"]))
+    assert "after" not in reported
+    assert reported["saved"] == [
         SAVED[platform] + " XRGeneralSettingsPerBuildTarget"
     ]  # else the editor forgets what was set when it is closed
-    assert (told["changed again"], told["dirtied again"]) == (["0"], ["0"])
-    assert "again" not in told
+    assert (reported["changed again"], reported["dirtied again"]) == (["0"], ["0"])
+    assert "again" not in reported
 
 
 @pytest.mark.parametrize("platform", PLATFORMS)
@@ -95,10 +95,10 @@ def test_a_renderer_that_is_made_can_draw_camera_effects(program: ProjectProgram
 
 
 def test_the_built_in_pipeline_keeps_the_one_way_that_it_knows(program: ProjectProgram) -> None:
-    told = program.tell("KeepsBuiltIn")
-    assert "after" not in told
-    assert told["api"] == ["Legacy"]
-    assert "Log MUA set Quality > Anti-aliasing: 4 -> 0" in told["log"]  # the most that any quality level has
+    reported = program.tell("KeepsBuiltIn")
+    assert "after" not in reported
+    assert reported["api"] == ["Legacy"]
+    assert "Log MUA set Quality > Anti-aliasing: 4 -> 0" in reported["log"]  # the most that any quality level has
 
 
 def test_an_openxr_that_fails_builds_is_too_old() -> None:
@@ -109,19 +109,21 @@ def test_an_openxr_that_fails_builds_is_too_old() -> None:
 
 
 def test_xr_settings_that_the_editor_lost_are_taken_and_an_optional_feature_enabled(program: ProjectProgram) -> None:
-    told = program.tell("FindsLostSettings")
-    assert (told["found"], "after" in told) == (["True"], False)
-    assert "Log MUA set OpenXR > com.unity.openxr.feature.meta-display-utilities for Android: off -> on" in told["log"]
+    reported = program.tell("FindsLostSettings")
+    assert (reported["found"], "after" in reported) == (["True"], False)
+    assert (
+        "Log MUA set OpenXR > com.unity.openxr.feature.meta-display-utilities for Android: off -> on" in reported["log"]
+    )
 
 
 @pytest.mark.parametrize("platform", PLATFORMS)
 def test_each_setting_that_is_broken_is_named_and_mended(program: ProjectProgram, platform: str) -> None:
-    told = program.tell("NamesWhatIsBroken", platform)
+    reported = program.tell("NamesWhatIsBroken", platform)
     made = {change[1] for line in program.tell("SetsUp", platform)["log"] if (change := CHANGE.fullmatch(line))}
-    faults = [FAULT.fullmatch(line) for line in told["fault"]]
+    faults = [FAULT.fullmatch(line) for line in reported["fault"]]
     named = {fault[1] for fault in faults if fault}
     assert named == made
-    assert set(told["left"]) == {"0"}
+    assert set(reported["left"]) == {"0"}
 
 
 @pytest.mark.parametrize(
@@ -129,24 +131,26 @@ def test_each_setting_that_is_broken_is_named_and_mended(program: ProjectProgram
     [("nothing", "own"), ("Assets/Skin.mat", "built-in"), ("Assets/Samples/MUA Avatar/A.mat", "own")],
 )
 def test_what_is_right_another_way_is_left_alone(program: ProjectProgram, own: str, pipeline: str) -> None:
-    told = program.tell("KeepsWhatIsRight", own)
-    assert "after" not in told
-    assert told["identifier"] == ["org.example.own"]
-    assert told["sdk"] == ["AndroidApiLevel33 AndroidApiLevel35"]
-    assert told["stripping"] == ["Minimal"]
-    assert told["pipeline"] == [pipeline]  # a project with materials of its own keeps the pipeline that they are for
+    reported = program.tell("KeepsWhatIsRight", own)
+    assert "after" not in reported
+    assert reported["identifier"] == ["org.example.own"]
+    assert reported["sdk"] == ["AndroidApiLevel33 AndroidApiLevel35"]
+    assert reported["stripping"] == ["Minimal"]
+    assert reported["pipeline"] == [
+        pipeline
+    ]  # a project with materials of its own keeps the pipeline that they are for
 
 
 def test_another_render_pipeline_is_named_and_kept(program: ProjectProgram) -> None:
-    told = program.tell("KeepsWhatIsRight", "pipeline")
-    assert told["after"] == ["Graphics > Render pipeline is OtherPipeline, expected UniversalRenderPipelineAsset"]
+    reported = program.tell("KeepsWhatIsRight", "pipeline")
+    assert reported["after"] == ["Graphics > Render pipeline is OtherPipeline, expected UniversalRenderPipelineAsset"]
 
 
 def test_an_editor_without_the_module_is_told_how_to_get_it(program: ProjectProgram) -> None:
-    told = program.tell("LacksModule")
-    assert told["fault"] == ["This editor cannot build for Quest: add 'Android Build Support' with Unity Hub"]
-    assert told["exit"] == ["exit 1"]
-    assert told["log"] == [
+    reported = program.tell("LacksModule")
+    assert reported["fault"] == ["This editor cannot build for Quest: add 'Android Build Support' with Unity Hub"]
+    assert reported["exit"] == ["exit 1"]
+    assert reported["log"] == [
         "Error MUA-BUILD FAIL This editor cannot build for PC Link: add 'Windows Build Support' with Unity Hub",
         "Error MUA-BUILD FAIL This editor cannot build for Quest: add 'Android Build Support' with Unity Hub",
     ]
@@ -170,16 +174,16 @@ def test_the_menu_tells_what_is_wrong_and_changes_nothing(program: ProjectProgra
 
 @pytest.mark.parametrize(("own", "asked"), [("nothing", f"{XR} {URP}"), ("Assets/Skin.mat", XR)])
 def test_batch_mode_adds_packages_and_asks_to_be_run_again(program: ProjectProgram, own: str, asked: str) -> None:
-    told = program.tell("LacksPackages", "batch", "no", "", own, packages=False)
-    assert (told["asked"], told["exit"]) == ([asked], ["exit 3"])
-    assert told["log"] == [f"Log MUA-BUILD AGAIN added {asked.replace(' ', ', ')}"]
-    assert "Package com.unity.xr.openxr is absent or too old" in "".join(told["fault"])
+    reported = program.tell("LacksPackages", "batch", "no", "", own, packages=False)
+    assert (reported["asked"], reported["exit"]) == ([asked], ["exit 3"])
+    assert reported["log"] == [f"Log MUA-BUILD AGAIN added {asked.replace(' ', ', ')}"]
+    assert "Package com.unity.xr.openxr is absent or too old" in "".join(reported["fault"])
 
 
 def test_packages_that_cannot_be_added_fail_with_the_reason(program: ProjectProgram) -> None:
-    told = program.tell("LacksPackages", "batch", "no", "no network", "Assets/Skin.mat", packages=False)
-    assert told["exit"] == ["exit 1"]
-    assert told["log"] == [f"Error MUA-BUILD FAIL Packages {XR.replace(' ', ', ')} could not be added: no network"]
+    reported = program.tell("LacksPackages", "batch", "no", "no network", "Assets/Skin.mat", packages=False)
+    assert reported["exit"] == ["exit 1"]
+    assert reported["log"] == [f"Error MUA-BUILD FAIL Packages {XR.replace(' ', ', ')} could not be added: no network"]
 
 
 def test_the_menu_asks_before_it_adds_packages(program: ProjectProgram) -> None:
@@ -195,6 +199,6 @@ def test_the_menu_asks_before_it_adds_packages(program: ProjectProgram) -> None:
 
 
 def test_the_menu_goes_on_once_packages_are_there(program: ProjectProgram) -> None:
-    told = program.tell("GoesOnAfterReload")
-    assert "fault" not in told
-    assert told["resumes"] == ["0"]
+    reported = program.tell("GoesOnAfterReload")
+    assert "fault" not in reported
+    assert reported["resumes"] == ["0"]

@@ -197,7 +197,7 @@ def damage(document: dict[str, Any], *keys: str | int, value: object) -> None:
 
 
 @pytest.mark.parametrize(
-    ("keys", "value", "told"),
+    ("keys", "value", "reported"),
     [
         (("kernel",), "another.compute", "holds no cases of splat_sort.compute"),
         (("cases",), [], "holds no cases"),
@@ -220,13 +220,13 @@ def damage(document: dict[str, Any], *keys: str | int, value: object) -> None:
     ],
 )
 def test_a_damaged_golden_file_fails_once(
-    story: Story, streaming: Path, keys: tuple[str | int, ...], value: object, told: str
+    story: Story, streaming: Path, keys: tuple[str | int, ...], value: object, reported: str
 ) -> None:
     path = streaming / "MuaGolden" / "splat_sort.json"
     document = json.loads(path.read_text())
     damage(document, *keys, value=value)
     path.write_text(json.dumps(document))
-    assert told in story().failed["splat_sort/golden"]
+    assert reported in story().failed["splat_sort/golden"]
 
 
 @pytest.mark.parametrize("beyond", [0, 1])
@@ -315,8 +315,8 @@ def failure(ran: Ran) -> str:
 
 @pytest.mark.parametrize("seconds", ["0", "-1", "nan", "1e9", "soon"])
 def test_a_bench_of_no_time_fails(story: Story, seconds: str) -> None:
-    told = failure(story("Plays", "-muaBench", "first", "-muaSeconds", seconds, "-muaRun", RUN))
-    assert f"-muaSeconds is {seconds}, expected a number" in told
+    reported = failure(story("Plays", "-muaBench", "first", "-muaSeconds", seconds, "-muaRun", RUN))
+    assert f"-muaSeconds is {seconds}, expected a number" in reported
 
 
 def test_a_bench_without_seconds_fails(story: Story) -> None:
@@ -329,5 +329,5 @@ def test_a_bench_of_no_avatar_fails(story: Story, avatar: str) -> None:
 
 
 def test_a_bench_fails_that_loses_its_avatar(story: Story) -> None:
-    told = failure(story("LosesAvatar", "-muaBench", "first", "-muaSeconds", "60", "-muaRun", RUN))
-    assert told == "the player cannot measure: the scene has destroyed the avatar first"
+    reported = failure(story("LosesAvatar", "-muaBench", "first", "-muaSeconds", "60", "-muaRun", RUN))
+    assert reported == "the player cannot measure: the scene has destroyed the avatar first"

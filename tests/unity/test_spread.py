@@ -48,16 +48,18 @@ class Watched:
         file = self._folder / "first.muaavatar"
         write(file, synthetic_avatar(1), storage="f16")
         said = self._csharp.run(self._program, ROOT / "ComputeShaders", story, file)
-        told = [line.split("\t", 1) for line in said.splitlines()]
-        assert ["alive", "0"] in told
-        sets = [int(value) for name, value in told if name == "sets"]
-        spread, at_once = (self._shown(name, told, count) for name, count in zip((SPREAD, AT_ONCE), sets, strict=True))
+        reported = [line.split("\t", 1) for line in said.splitlines()]
+        assert ["alive", "0"] in reported
+        sets = [int(value) for name, value in reported if name == "sets"]
+        spread, at_once = (
+            self._shown(name, reported, count) for name, count in zip((SPREAD, AT_ONCE), sets, strict=True)
+        )
         return spread, at_once
 
-    def _shown(self, name: str, told: list[list[str]], sets: int) -> Shown:
-        dispatches = [int(value) for label, value in told if label == name]
-        outside = [value for label, value in told if label == f"outside {name}"]
-        splats = [int(value) for label, value in told if label == f"splats {name}"]
+    def _shown(self, name: str, reported: list[list[str]], sets: int) -> Shown:
+        dispatches = [int(value) for label, value in reported if label == name]
+        outside = [value for label, value in reported if label == f"outside {name}"]
+        splats = [int(value) for label, value in reported if label == f"splats {name}"]
         recording = self._folder / f"first {name}"
         kept = replay(self._device, recording).kept
         pairs = [(kept[f"{i} mesh"], kept[f"{i} texel_channels"]) for i in range(FRAMES)]

@@ -44,7 +44,7 @@ SCREEN = (160, 200)
 GAMMA = ("UNITY_COLORSPACE_GAMMA",)
 FRAME = 3  # of a clip of 24 Hz
 PLACE = (0.35, 0.1, -0.2, 0.1, 0.5, -0.1, 0.85446, 0.9)  # Unity's position, then rotation (x, y, z, w), then size
-PASSES = ("Geometry", "Mesh", "Skeleton", "ShadowCaster")
+PASSES = ("Geometry", "Template", "Skeleton", "ShadowCaster")
 VIEWS = PASSES[:3]
 MAP = 512  # pixels along a shadow map
 STEEPEST = 2.3  # of light over sRGB, near white
@@ -167,7 +167,7 @@ class Painter:
         if name == "Geometry":
             triangles = surface_mesh(scene.avatar).triangles.astype(np.int64)
             return rasterised.smooth(camera, placed(frame.centres), triangles, GEOMETRY_COLOR, wall=wall)
-        if name == "Mesh":
+        if name == "Template":
             return rasterised.flat(camera, placed(frame.mesh), rig.mesh.faces, TEMPLATE_COLOR, wall=wall)
         return rasterised.strokes(camera, self.strokes())
 
@@ -251,12 +251,12 @@ def test_a_surface_yields_a_centimetre_to_what_lies_on_it(painter: Painter) -> N
     depth = middles[facet] @ normal / (ray @ normal)  # of the pixel's middle on the facet
     seen = []
     for behind in (0.005, 0.015):
-        image = painter.unity("Mesh", plane=depth_at(camera, depth + behind))
+        image = painter.unity("Template", plane=depth_at(camera, depth + behind))
         seen.append(bool(image[rows[facet], columns[facet], 3]))
     assert seen == [False, True]
 
 
-@pytest.mark.parametrize("name", ["Geometry", "Mesh"])
+@pytest.mark.parametrize("name", ["Geometry", "Template"])
 def test_a_linear_project_is_given_light(painter: Painter, name: str) -> None:
     srgb = painter.expected(name, 0)
     image = np.concatenate([light_of(srgb.image[..., :3]), srgb.image[..., 3:]], axis=-1)
@@ -333,7 +333,7 @@ def test_what_lies_before_a_lights_volume_still_casts_a_shadow(painter: Painter)
 def test_draws_of_indices(scene: Scene) -> None:
     faces = scene.avatar.rig.mesh.faces.ravel()
     surface = surface_mesh(scene.avatar)
-    for name in ("Mesh", "ShadowCaster"):
+    for name in ("Template", "ShadowCaster"):
         np.testing.assert_array_equal(scene.drawn[name].indices, faces)
         assert scene.drawn[name].arguments == (faces.size, 1)
     np.testing.assert_array_equal(scene.drawn["Geometry"].indices, surface.triangles.ravel())

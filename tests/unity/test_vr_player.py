@@ -48,13 +48,13 @@ def story(csharp: CSharp, program: Path, folder: Path) -> Story:
     ) -> Told:
         for seed, file in enumerate(files):
             put(folder / f"{file}.muaavatar", seed)
-        told: Told = {"log": []}
+        reported: Told = {"log": []}
         said = csharp.run(program, KERNELS, name, folder, folder / "persistent", folder / "streaming", *told_player)
         for line in said.splitlines():
             key, value = line.split("\t", 1)
-            told.setdefault(key, []).append(value)
-        assert (told["alive"], told["recorders"]) == (["0"], ["0"])
-        return told
+            reported.setdefault(key, []).append(value)
+        assert (reported["alive"], reported["recorders"]) == (["0"], ["0"])
+        return reported
 
     return tell
 
@@ -68,9 +68,9 @@ def put(path: Path, seed: int) -> None:
 
 
 def test_the_scene_has_what_the_player_needs(story: Story) -> None:
-    told = story("Scene", files=())
-    assert told["saved"] == ["Assets/Scenes/Player.unity"]
-    assert [told[name] for name in ("Ground", "Avatar", "User", "Head", "Panel", "Help")] == [
+    reported = story("Scene", files=())
+    assert reported["saved"] == ["Assets/Scenes/Player.unity"]
+    assert [reported[name] for name in ("Ground", "Avatar", "User", "Head", "Panel", "Help")] == [
         ["MeshFilter MeshRenderer"],
         ["AvatarRenderer"],
         ["VrPlayer"],
@@ -78,24 +78,24 @@ def test_the_scene_has_what_the_player_needs(story: Story) -> None:
         ["MeshRenderer TextMesh StandingText"],
         ["MeshRenderer TextMesh StandingText"],
     ]
-    assert told["light"] == ["Directional Soft"]
-    assert told["camera"] == ["False False SolidColor MainCamera"]
-    assert (told["ground"], told["avatars"]) == (["True"], ["True"])
-    assert told["faces"] == ["0.00 0.00 -1.00, the user at 0.00 0.00 -2.20"]
-    assert told["log"] == []
+    assert reported["light"] == ["Directional Soft"]
+    assert reported["camera"] == ["False False SolidColor MainCamera"]
+    assert (reported["ground"], reported["avatars"]) == (["True"], ["True"])
+    assert reported["faces"] == ["0.00 0.00 -1.00, the user at 0.00 0.00 -2.20"]
+    assert reported["log"] == []
 
 
 def test_letters_are_drawn_by_a_shader_that_tests_depth(story: Story) -> None:
     """With the font's texture, also where the font has made another one meanwhile."""
-    told = story("Letters")
-    assert told["shader"] == ["Hidden/MUA/Text"]
-    assert told["own"] == ["True", "True"]
-    assert told["log"] == []
+    reported = story("Letters")
+    assert reported["shader"] == ["Hidden/MUA/Text"]
+    assert reported["own"] == ["True", "True"]
+    assert reported["log"] == []
 
 
 def test_keys_do_what_the_table_says(story: Story) -> None:
-    told = story("Keys")
-    assert told == {
+    reported = story("Keys")
+    assert reported == {
         "Space": ["playing True; frame -", "playing False; frame 3", "playing True; frame -"],
         "Period": ["frame 4"],
         "Comma": ["frame 3", "frame 2"],
@@ -103,9 +103,9 @@ def test_keys_do_what_the_table_says(story: Story) -> None:
         "LeftBracket": ["clip 0", "clip 1"],
         "Digit1": ["views Shadow"],
         "Digit2": ["views Geometry, Shadow"],
-        "Digit3": ["views Geometry, Mesh, Shadow"],
-        "Digit4": ["views Geometry, Mesh, Skeleton, Shadow"],
-        "Digit5": ["views Geometry, Mesh, Skeleton"],
+        "Digit3": ["views Geometry, Template, Shadow"],
+        "Digit4": ["views Geometry, Template, Skeleton, Shadow"],
+        "Digit5": ["views Geometry, Template, Skeleton"],
         "H": ["help False", "help True"],
         "W": ["user 0.00 0.00 -1.99"],
         "S": ["user 0.00 0.00 -2.20"],
@@ -135,8 +135,8 @@ def test_keys_do_what_the_table_says(story: Story) -> None:
 
 
 def test_buttons_do_what_the_table_says(story: Story) -> None:
-    told = story("Controllers")
-    assert told == {
+    reported = story("Controllers")
+    assert reported == {
         "A": ["playing True; frame -", "playing False; frame 3"],
         "right trigger": ["frame 4"],
         "left trigger": ["frame 3"],
@@ -153,9 +153,9 @@ def test_buttons_do_what_the_table_says(story: Story) -> None:
         "X": ["avatar first"],
         "left grip, A": ["views Shadow"],
         "left grip, B": ["views Geometry, Shadow"],
-        "left grip, X": ["views Geometry, Mesh, Shadow"],
-        "left grip, Y": ["views Geometry, Mesh, Skeleton, Shadow"],
-        "left grip, right trigger": ["views Geometry, Mesh, Skeleton"],
+        "left grip, X": ["views Geometry, Template, Shadow"],
+        "left grip, Y": ["views Geometry, Template, Skeleton, Shadow"],
+        "left grip, right trigger": ["views Geometry, Template, Skeleton"],
         "left grip, left trigger": ["clip 1"],
         "log": [],
         "alive": ["0"],
@@ -164,70 +164,74 @@ def test_buttons_do_what_the_table_says(story: Story) -> None:
 
 
 def test_nobody_grows_beyond_twice_shrinks_below_an_eighth_or_looks_over_the_top(story: Story) -> None:
-    told = story("Limits")
-    assert (told["size after UpArrow"], told["size after DownArrow"]) == (["0.125"], ["2.000"])
-    assert told["looks after 4000"] == ["0.00 1.00 0.09"]  # 85 degrees
-    assert told["looks after -8000"] == ["0.00 -1.00 0.09"]
+    reported = story("Limits")
+    assert (reported["size after UpArrow"], reported["size after DownArrow"]) == (["0.125"], ["2.000"])
+    assert reported["looks after 4000"] == ["0.00 1.00 0.09"]  # 85 degrees
+    assert reported["looks after -8000"] == ["0.00 -1.00 0.09"]
 
 
 def test_a_stick_walks_by_its_way_beyond_the_dead_zone(story: Story) -> None:
-    told = story("Sticks")
+    reported = story("Sticks")
     whole = 10 * 1.5 / 72  # frames, metres a second, frames a second
-    assert float(told["0.140"][0]) == 0
+    assert float(reported["0.140"][0]) == 0
     for push, share in (("0.160", 0.01 / 0.85), ("0.575", 0.5), ("-0.575", -0.5), ("1.000", 1)):
-        assert float(told[push][0]) == pytest.approx(share * whole, abs=1e-4)
+        assert float(reported[push][0]) == pytest.approx(share * whole, abs=1e-4)
 
 
 def test_a_second_turns_a_quarter_and_rises_a_metre_and_a_half_and_scrubs_two_seconds(story: Story) -> None:
-    told = story("Speeds")
-    assert told["turned"] == ["-1.00 0.00 0.00"]
-    assert told["risen"] == ["1.50"]
-    assert told["scrubbed"] == ["0.250"]  # in 9 of 72 frames
+    reported = story("Speeds")
+    assert reported["turned"] == ["-1.00 0.00 0.00"]
+    assert reported["risen"] == ["1.50"]
+    assert reported["scrubbed"] == ["0.250"]  # in 9 of 72 frames
 
 
 def test_numbers_are_written_digit_by_digit(csharp: CSharp, program: Path, folder: Path) -> None:
-    told = csharp.run(program, KERNELS, "Numbers", folder, folder / "persistent", folder / "streaming")
-    written = told.splitlines()[0].removeprefix("numbers\t").rstrip("; ")
+    reported = csharp.run(program, KERNELS, "Numbers", folder, folder / "persistent", folder / "streaming")
+    written = reported.splitlines()[0].removeprefix("numbers\t").rstrip("; ")
     assert written == "0 0.0; 9 9.0; 10 10.0; 100 100.0; 100 100.0; 101 101.0; 1000 1000.0; 7 7.3; - -; - -"
 
 
 def test_the_texts_stand_on_either_side_and_turn_to_the_user(story: Story) -> None:
-    told = story("Furniture", files=())
-    assert (told["eyes"], told["sees"]) == (["1.60"], ["0.05 to 100"])
-    assert told["light falls"] == ["-0.32 -0.77 0.56"]
-    assert told["Panel"] == ["-1.60 1.90 0.20 faces -0.50 0.00 0.87"]
-    assert told["Help"] == ["0.70 1.90 0.20 faces 0.50 0.00 0.87"]
-    assert told["letters"] == ["0.0280 UpperLeft", "0.0280 UpperLeft"]
+    reported = story("Furniture", files=())
+    assert (reported["eyes"], reported["sees"]) == (["1.60"], ["0.05 to 100"])
+    assert reported["light falls"] == ["-0.32 -0.77 0.56"]
+    assert reported["Panel"] == ["-1.60 1.90 0.20 faces -0.50 0.00 0.87"]
+    assert reported["Help"] == ["0.70 1.90 0.20 faces 0.50 0.00 0.87"]
+    assert reported["letters"] == ["0.0280 UpperLeft", "0.0280 UpperLeft"]
 
 
 def test_where_no_avatars_are_streamed_there_is_no_index(story: Story) -> None:
-    told = story("Index", files=())
-    assert (told["of nothing"], told["of what is gone"], told["nowhere"]) == (["False"], ["False"], ["False"])
+    reported = story("Index", files=())
+    assert (reported["of nothing"], reported["of what is gone"], reported["nowhere"]) == (
+        ["False"],
+        ["False"],
+        ["False"],
+    )
 
 
 def test_a_headset_that_is_taken_off_is_set_up_again_when_it_comes_back(story: Story) -> None:
-    told = story("HeadsetGoes")
-    assert (told["worn"], told["taken off"], told["worn again"]) == (["True"], ["False"], ["True 0.5"])
+    reported = story("HeadsetGoes")
+    assert (reported["worn"], reported["taken off"], reported["worn again"]) == (["True"], ["False"], ["True 0.5"])
 
 
 def test_a_headset_gives_pose_floor_and_rate(story: Story) -> None:
-    told = story("Headset")
-    assert told["head"] == ["0.50 1.80 -1.95 looks 1.00 0.00 0.00"]
-    assert (told["foveation"], told["origin"], told["rate"]) == (["0.5"], ["Floor"], ["72"])
-    assert "display 72 Hz, 72 wanted   foveation 0.50" in told["panel"][0]
-    assert told["left stick up"] == ["user 0.21 0.00 -2.20"]  # to where the head looks
-    assert told["right drag"] == [""]  # a mouse does not turn a head that is tracked
-    assert told["zoomed"] == ["0.35 1.80 -0.98 near 0.025"]  # half as far, at the same height
-    assert told["back"] == ["0.00 1.80 -2.20 looks 0.00 0.00 1.00"]  # wherever in the room the user stands
+    reported = story("Headset")
+    assert reported["head"] == ["0.50 1.80 -1.95 looks 1.00 0.00 0.00"]
+    assert (reported["foveation"], reported["origin"], reported["rate"]) == (["0.5"], ["Floor"], ["72"])
+    assert "display 72 Hz, 72 wanted   foveation 0.50" in reported["panel"][0]
+    assert reported["left stick up"] == ["user 0.21 0.00 -2.20"]  # to where the head looks
+    assert reported["right drag"] == [""]  # a mouse does not turn a head that is tracked
+    assert reported["zoomed"] == ["0.35 1.80 -0.98 near 0.025"]  # half as far, at the same height
+    assert reported["back"] == ["0.00 1.80 -2.20 looks 0.00 0.00 1.00"]  # wherever in the room the user stands
 
 
 def test_the_panel_says_what_is_shown_and_how_fast(story: Story, folder: Path) -> None:
-    told = story("Panel")
+    reported = story("Panel")
     outside = outside_of_training(folder / "persistent/avatars/first.muaavatar", 3)
     assert outside > 0.01
-    assert told["first"][0].startswith("72 fps   13.9 ms a frame")
-    assert "|loading 0 %|" in told["first"][0]
-    assert told["panel"][0].split("|") == [
+    assert reported["first"][0].startswith("72 fps   13.9 ms a frame")
+    assert "|loading 0 %|" in reported["first"][0]
+    assert reported["panel"][0].split("|") == [
         "72 fps   13.9 ms a frame   9.8 ms GPU",
         "",
         "ms on the GPU",
@@ -244,71 +248,71 @@ def test_the_panel_says_what_is_shown_and_how_fast(story: Story, folder: Path) -
 
 
 def test_a_frame_allocates_nothing_and_a_second_two_texts(story: Story) -> None:
-    told = story("Allocates")
-    assert told["texts"] == ["4"]
-    assert told["allocated"] == ["0"]
-    assert int(told["beyond texts"][0]) < 4 * HEADER
-    assert told["still"] == ["0"]
+    reported = story("Allocates")
+    assert reported["texts"] == ["4"]
+    assert reported["allocated"] == ["0"]
+    assert int(reported["beyond texts"][0]) < 4 * HEADER
+    assert reported["still"] == ["0"]
 
 
 def test_avatars_come_in_the_order_of_folder_app_and_scene(story: Story) -> None:
     files = ("persistent/avatars/b", "persistent/avatars/a", "streaming/more/d", "streaming/c")
     order = ["a", "b", "c", "d", "asset"]
-    told = story("Order", files=files)
-    assert told["entry"] == [f"avatar {i}/5   {name}" for i, name in enumerate(order, 1)]
-    assert told["shown"][:4] == order[:4]
-    assert told["shown"][4] in ("a", "b")  # whose bytes the asset has
+    reported = story("Order", files=files)
+    assert reported["entry"] == [f"avatar {i}/5   {name}" for i, name in enumerate(order, 1)]
+    assert reported["shown"][:4] == order[:4]
+    assert reported["shown"][4] in ("a", "b")  # whose bytes the asset has
 
 
 def test_avatars_inside_an_android_package_are_found_by_their_index(story: Story) -> None:
-    told = story("Streams", files=("persistent/avatars/a", "streaming/more/d", "streaming/c"))
-    assert told["index"] == ["c.muaavatar|more/d.muaavatar|"]
-    assert told["entry"] == ["avatar 1/3   a", "avatar 2/3   c", "avatar 3/3   d"]
+    reported = story("Streams", files=("persistent/avatars/a", "streaming/more/d", "streaming/c"))
+    assert reported["index"] == ["c.muaavatar|more/d.muaavatar|"]
+    assert reported["entry"] == ["avatar 1/3   a", "avatar 2/3   c", "avatar 3/3   d"]
 
 
 def test_switching_gives_back_the_avatar_before(story: Story) -> None:
-    told = story("Switches")
-    assert (told["uploading"], told["shown"], told["kept"]) == (["True"] * 4, ["True"] * 4, ["True"])
+    reported = story("Switches")
+    assert (reported["uploading"], reported["shown"], reported["kept"]) == (["True"] * 4, ["True"] * 4, ["True"])
 
 
 def test_without_an_avatar_the_panel_says_where_to_put_one(story: Story, folder: Path) -> None:
     (folder / "persistent" / "avatars").rmdir()
-    told = story("Goes", files=())
-    assert told["state"] == ["Empty "]
-    said = told["panel"][0].replace("|", " ")
+    reported = story("Goes", files=())
+    assert reported["state"] == ["Empty "]
+    said = reported["panel"][0].replace("|", " ")
     assert "No avatar was found. Put files like hero.muaavatar in" in said
-    assert str(folder / "persistent" / "avatars") in told["panel"][0].replace("|", "")
+    assert str(folder / "persistent" / "avatars") in reported["panel"][0].replace("|", "")
     assert (folder / "persistent" / "avatars").is_dir()
-    assert told["log"] == []
+    assert reported["log"] == []
 
 
 def test_an_avatar_that_fails_says_why_and_makes_way_for_the_next(story: Story, folder: Path) -> None:
     (folder / "persistent" / "avatars" / "broken.muaavatar").write_bytes(b"no avatar at all")
-    told = story("Goes")
-    assert told["state"] == ["Ready first"]
-    assert "avatar 2/3   first" in told["panel"][0]
-    assert "broken.muaavatar" in told["panel"][0].replace("|", "")
-    assert "avatar 3/3   second" in told["on"][0]  # back past the broken one, from the first to the last
-    assert "broken" not in told["on"][0]
-    assert len(told["log"]) == 1
+    reported = story("Goes")
+    assert reported["state"] == ["Ready first"]
+    assert "avatar 2/3   first" in reported["panel"][0]
+    assert "broken.muaavatar" in reported["panel"][0].replace("|", "")
+    assert "avatar 3/3   second" in reported["on"][0]  # back past the broken one, from the first to the last
+    assert "broken" not in reported["on"][0]
+    assert len(reported["log"]) == 1
 
 
 def test_where_all_avatars_fail_the_player_rests(story: Story, folder: Path) -> None:
     for name in ("broken", "other"):
         (folder / "persistent" / "avatars" / f"{name}.muaavatar").write_bytes(b"no avatar at all")
-    told = story("Goes", files=())
-    assert told["state"] == ["Failed "]
-    assert "broken.muaavatar" in told["panel"][0].replace("|", "") or "other.muaavatar" in told["panel"][0].replace(
-        "|", ""
-    )
-    assert len(told["log"]) == 2
+    reported = story("Goes", files=())
+    assert reported["state"] == ["Failed "]
+    assert "broken.muaavatar" in reported["panel"][0].replace("|", "") or "other.muaavatar" in reported["panel"][
+        0
+    ].replace("|", "")
+    assert len(reported["log"]) == 2
 
 
 def test_the_player_begins_with_the_avatar_it_is_told(story: Story) -> None:
     assert story("Goes", "-muaAvatar", "second")["state"] == ["Ready second"]
-    told = story("Goes", "-muaAvatar", "third")
-    assert told["state"] == ["Ready first"]
-    assert "No avatar is called third." in told["panel"][0]
+    reported = story("Goes", "-muaAvatar", "third")
+    assert reported["state"] == ["Ready first"]
+    assert "No avatar is called third." in reported["panel"][0]
 
 
 def test_the_page_of_buttons_and_the_readme_name_the_same_actions(story: Story) -> None:

@@ -100,9 +100,9 @@ class Page:
         return path
 
     @property
-    def told(self) -> dict[str, list[str]]:
+    def reported(self) -> dict[str, list[str]]:
         """What the page wrote to its console, what it raised and what it asked for: console, errors, requests."""
-        return dict(self.do("told"))
+        return dict(self.do("reported"))
 
     def close(self) -> None:
         self.do("close")

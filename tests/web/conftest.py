@@ -52,5 +52,5 @@ def page(browser: Browser, serve: Serve) -> Iterator[Page]:
     opened = browser.page(serve({**player_files(), "index.html": PLAIN}), size=(160, 200))
     opened.wait("Boolean(customElements.get('mua-avatar'))")
     yield opened
-    assert opened.told["errors"] == []
+    assert opened.reported["errors"] == []
     opened.close()

@@ -2,7 +2,6 @@
 // A frame decoded at once and posed; then the next one in parts, at the coarsest level; each sorted for the cameras.
 
 import { readFileSync } from "node:fs";
-import { coarsest } from "../../python/mua/web/coarser.js";
 import { window } from "../../python/mua/web/clip.js";
 import { read } from "../../python/mua/web/format/read.js";
 import { fakeGpu } from "./units/gpu.mjs";
@@ -34,7 +33,7 @@ const at = (index) => window(avatar.skeleton, avatar.clips[0], index, avatar.enc
 frame.decode("pass", at(1), 0);
 frame.repose("pass", at(1)[0], [0.5, 0, -1]);
 splats.sort("pass", cameras.slice(0, 1));
-frame.begin(at(2), coarsest(avatar));
+frame.begin(at(2), avatar.texels.levels.length);
 while (frame.partsLeft) frame.advance("pass");
 frame.show();
 frame.repose("pass", at(2)[0], [0, 0, 0]);

@@ -29,11 +29,11 @@ const operations = {
     await page.setViewport({ width, height, deviceScaleFactor: scale, hasTouch: touch, isMobile: touch });
     await page.emulateMediaFeatures(Object.entries(media).map(([name, value]) => ({ name, value })));
     if (before) await page.evaluateOnNewDocument(before);
-    const told = { console: [], errors: [], requests: [] };
-    page.on("console", (message) => told.console.push(`${message.type()}: ${message.text()}`));
-    page.on("pageerror", (error) => told.errors.push(String(error?.stack ?? error)));
-    page.on("request", (request) => told.requests.push(request.url()));
-    return pages.push({ page, context, told }) - 1;
+    const reported = { console: [], errors: [], requests: [] };
+    page.on("console", (message) => reported.console.push(`${message.type()}: ${message.text()}`));
+    page.on("pageerror", (error) => reported.errors.push(String(error?.stack ?? error)));
+    page.on("request", (request) => reported.requests.push(request.url()));
+    return pages.push({ page, context, reported }) - 1;
   },
   goto: ({ page, url }) => page.goto(url, { waitUntil: "load" }).then((answer) => answer?.status() ?? 0),
   evaluate: ({ page, code }) => page.evaluate(code),
@@ -71,7 +71,7 @@ const operations = {
   resize: ({ page, width, height }) => page.setViewport({ width, height }),
   screenshot: ({ page, path }) => page.screenshot({ path }).then(() => path),
   tree: ({ page }) => page.accessibility.snapshot(),
-  told: ({ told }) => told,
+  reported: ({ reported }) => reported,
   close: ({ context }) => context.close(),
 };
 

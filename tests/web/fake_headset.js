@@ -51,7 +51,10 @@
       const size = 4 * WIDTH * HEIGHT;
       const buffer = gpu.createBuffer({ size, usage: GPUBufferUsage.MAP_READ | GPUBufferUsage.COPY_DST });
       const encoder = gpu.createCommandEncoder();
-      encoder.copyTextureToBuffer({ texture, origin: [0, 0, eye] }, { buffer, bytesPerRow: 4 * WIDTH }, [WIDTH, HEIGHT]);
+      encoder.copyTextureToBuffer({ texture, origin: [0, 0, eye] }, { buffer, bytesPerRow: 4 * WIDTH }, [
+        WIDTH,
+        HEIGHT,
+      ]);
       gpu.queue.submit([encoder.finish()]);
       await buffer.mapAsync(GPUMapMode.READ);
       return btoa(Array.from(new Uint8Array(buffer.getMappedRange()), (byte) => String.fromCharCode(byte)).join(""));
@@ -60,7 +63,7 @@
 
   globalThis.headset = headset;
   globalThis.XRGPUBinding = class {
-    constructor(session, gpu) {
+    constructor(_session, gpu) {
       if (!headset.adapters.at(-1)) throw new DOMException("The device does not fit the headset", "InvalidStateError");
       Object.assign(headset, { gpu });
     }
@@ -92,6 +95,8 @@
   const ask = GPU.prototype.requestAdapter;
   GPU.prototype.requestAdapter = function (wanted) {
     headset.adapters.push(Boolean(wanted?.xrCompatible));
-    return headset.unfit && wanted?.xrCompatible ? Promise.resolve(null) : ask.call(this, { powerPreference: wanted?.powerPreference });
+    return headset.unfit && wanted?.xrCompatible
+      ? Promise.resolve(null)
+      : ask.call(this, { powerPreference: wanted?.powerPreference });
   };
 }

@@ -29,7 +29,7 @@ class Fake {
   vr = false;
   onvr = null;
   camera = { azimuth: 0, elevation: 0, distance: 3, target: [0, 1, 0], fov: 0.8 };
-  show = { splats: true, geometry: true, mesh: false, skeleton: false, shadow: false };
+  show = { splats: true, geometry: true, template: false, skeleton: false, shadow: false };
   milliseconds = { decode: 1.25, sort: 0.5 };
   adapter = "fake adapter (software)";
   onerror = null;
@@ -58,7 +58,18 @@ class Fake {
     } catch {
       throw new AvatarError(`${name}: not an avatar.`);
     }
-    const handle = { notes: "", splats: 1, outsideTraining: 0, levels: [768, 384, 192], place: [0, 0, 0], bounds: [[-0.5, 0, -0.2], [0.5, 1.8, 0.2]], ...held };
+    const handle = {
+      notes: "",
+      splats: 1,
+      outsideTraining: 0,
+      levels: [768, 384, 192],
+      place: [0, 0, 0],
+      bounds: [
+        [-0.5, 0, -0.2],
+        [0.5, 1.8, 0.2],
+      ],
+      ...held,
+    };
     handle.remove = () => (this.avatars = this.avatars.filter((each) => each !== handle));
     this.avatars = [...this.avatars, handle];
     this.clip ??= handle.clips[0]?.name ?? null;

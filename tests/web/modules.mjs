@@ -13,15 +13,13 @@
 
 import "./strict_inflate.mjs";
 import { readFileSync, readSync } from "node:fs";
-import { ProgressiveLoad } from "../../python/mua/web/progressive.js";
 import { frameBox } from "../../python/mua/web/bounds.js";
 import { cameraOf, camerasOf, framing, sees } from "../../python/mua/web/camera.js";
 import { framesAt, sample, window } from "../../python/mua/web/clip.js";
-import { Levels } from "../../python/mua/web/levels.js";
 import { coarserTexture, textureOf } from "../../python/mua/web/coarser.js";
-import { Download } from "../../python/mua/web/download.js";
 import { readComponents } from "../../python/mua/web/components.js";
 import { describe } from "../../python/mua/web/descriptor.js";
+import { Download } from "../../python/mua/web/download.js";
 import { orderOf } from "../../python/mua/web/early.js";
 import { general, scientific, shortest } from "../../python/mua/web/format/numbers.js";
 import { read, readStage } from "../../python/mua/web/format/read.js";
@@ -29,11 +27,13 @@ import { Stages } from "../../python/mua/web/format/stages.js";
 import { expanded, half } from "../../python/mua/web/format/tensors.js";
 import { handleOf } from "../../python/mua/web/handle.js";
 import { chooseLevels, texelPixels } from "../../python/mua/web/level_choice.js";
+import { Levels } from "../../python/mua/web/levels.js";
 import { groundHeight, shadowArea } from "../../python/mua/web/overlays.js";
+import { boxAround } from "../../python/mua/web/placement.js";
 import { Playback } from "../../python/mua/web/playback.js";
 import { texelTiles, texelWords, upsamplingTaps } from "../../python/mua/web/prepare.js";
+import { ProgressiveLoad } from "../../python/mua/web/progressive.js";
 import { skinning, world } from "../../python/mua/web/skeleton.js";
-import { boxAround } from "../../python/mua/web/placement.js";
 import { surfaceMesh } from "../../python/mua/web/surface.js";
 
 const [what, ...given] = process.argv.slice(2);
@@ -59,7 +59,8 @@ function came(count) {
 }
 
 /** Bytes that this process takes, or at most has taken; maxRSS counts the parent that forked it. */
-const status = (name) => 1024 * Number(new RegExp(`${name}:\\s*(\\d+) kB`).exec(readFileSync("/proc/self/status", "utf8"))[1]);
+const status = (name) =>
+  1024 * Number(new RegExp(`${name}:\\s*(\\d+) kB`).exec(readFileSync("/proc/self/status", "utf8"))[1]);
 const peak = () => status("VmHWM");
 
 async function answer(content) {
@@ -144,7 +145,16 @@ function views(box) {
   const around = [-0.1, 0.1].flatMap((aside) => camera.position.map((at) => at + aside)); // a box that the camera is in
   const { distance: within, texel: texelWithin } = texelPixels(0.01, around, [camera]);
   const near = { within, texelWithin };
-  return { target, distance, ...camera, texel, ...near, seen: seen(camera), eyes, texelOfEyes: texelPixels(0.01, box, eyes).texel };
+  return {
+    target,
+    distance,
+    ...camera,
+    texel,
+    ...near,
+    seen: seen(camera),
+    eyes,
+    texelOfEyes: texelPixels(0.01, box, eyes).texel,
+  };
 }
 
 /** What a file that arrives in steps shows before all of it is there. */
@@ -194,11 +204,11 @@ function soon(total, bytes) {
   });
 }
 
-/** What is put into an engine, by the step that brought it, and the parts that the page is told of. */
+/** What is put into an engine, by the step that brought it, and the parts that the page is reported of. */
 async function shown(steps) {
   let resolve = () => {};
   const promise = new Promise((done) => (resolve = done));
-  const [put, told, entries] = [[], [], []];
+  const [put, reported, entries] = [[], [], []];
   const entry = { handle: { remove: () => put.push("removed") } };
   const engine = {
     entries,
@@ -209,7 +219,7 @@ async function shown(steps) {
       return entry;
     },
   };
-  const progressive = new ProgressiveLoad(engine, () => told.push(put.at(-1)));
+  const progressive = new ProgressiveLoad(engine, () => reported.push(put.at(-1)));
   const ended = [];
   for (const step of steps) {
     if (step === "ready") resolve();
@@ -218,7 +228,7 @@ async function shown(steps) {
     await new Promise((next) => setTimeout(next));
   }
   await Promise.all(ended);
-  return { put, told };
+  return { put, reported };
 }
 
 if (what === "measured") say(await measured(given[0], Number(given[1])));
@@ -235,13 +245,23 @@ if (what === "mutants") {
 }
 if (what === "truncated") {
   const content = bytes(given[0]);
-  for (let length = 0; length < content.byteLength; length += Number(given[1])) say(await answer(content.slice(0, length)));
+  for (let length = 0; length < content.byteLength; length += Number(given[1]))
+    say(await answer(content.slice(0, length)));
 }
 if (what === "values") say(values(await read(bytes(given[0])), given.slice(1).map(Number)));
 if (what === "played") say(played(await read(bytes(given[0])), JSON.parse(given[1])));
 if (what === "levels") say(levels(await read(bytes(given[0]))));
-if (what === "choices") say(JSON.parse(readFileSync(given[0])).map(({ avatars, budget }) => chooseLevels(avatars, budget)));
+if (what === "choices")
+  say(JSON.parse(readFileSync(given[0])).map(({ avatars, budget }) => chooseLevels(avatars, budget)));
 if (what === "views") say(views(given.map(Number)));
 if (what === "order") say(list(orderOf(Uint16Array.from(JSON.parse(readFileSync(given[0]))))));
 if (what === "halves") say(Array.from({ length: 0x7c00 }, (_, bits) => half(bits)));
-if (what === "numbers") say(given.map(Number).map((n) => [...(Number.isFinite(n) ? [general(n, 4), general(n, 6), scientific(n)] : ["", "", ""]), shortest(n)]));
+if (what === "numbers")
+  say(
+    given
+      .map(Number)
+      .map((n) => [
+        ...(Number.isFinite(n) ? [general(n, 4), general(n, 6), scientific(n)] : ["", "", ""]),
+        shortest(n),
+      ]),
+  );

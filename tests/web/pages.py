@@ -14,8 +14,8 @@ SHADOW = f"{ELEMENT}.shadowRoot"
 SENTENCE = f"({SHADOW}.querySelector('.says').hidden ? '' : {SHADOW}.querySelector('.says p').textContent)"
 # A device whose loss a test can bring about.
 LOSABLE = """Object.defineProperty(GPUDevice.prototype, "lost", { get() {
-  globalThis.lose = (reason) => { this.destroy(); this.told({ reason, message: "" }); };
-  return (this.losing ??= new Promise((resolve) => { this.told = resolve; }));
+  globalThis.lose = (reason) => { this.destroy(); this.reported({ reason, message: "" }); };
+  return (this.losing ??= new Promise((resolve) => { this.reported = resolve; }));
 } });"""
 # How often the page asked for a device, and for what has to be compiled.
 COUNTED = """globalThis.asked = {};

@@ -103,15 +103,15 @@ def test_a_server_that_refuses_ranges_sends_the_file_again(page: Page, breaking:
     assert breaking.asked == [None, f"bytes={BREAK}-"]
 
 
-@pytest.mark.parametrize(("begin", "told"), [(BREAK, ""), (BREAK - 8, "another part of it than was asked for")])
+@pytest.mark.parametrize(("begin", "reported"), [(BREAK, ""), (BREAK - 8, "another part of it than was asked for")])
 def test_a_part_that_is_not_the_one_that_was_asked_for_is_a_sentence(
-    page: Page, breaking: Breaking, content: bytes, begin: int, told: str
+    page: Page, breaking: Breaking, content: bytes, begin: int, reported: str
 ) -> None:
     rest = content[begin : begin + len(content) - BREAK]
     place = f"bytes {begin}-{begin + len(rest) - 1}/{len(content)}"
     answer = Answer(206, len(rest), rest, headers=(("Content-Range", place),))
-    load(page, breaking, answer, until=f"{SENTENCE}.includes('{told}')" if told else LOADED)
-    assert not told or page.evaluate(f"{ELEMENT}.avatars.length") == 0
+    load(page, breaking, answer, until=f"{SENTENCE}.includes('{reported}')" if reported else LOADED)
+    assert not reported or page.evaluate(f"{ELEMENT}.avatars.length") == 0
 
 
 @pytest.mark.parametrize("exposed", [True, False])

@@ -4,6 +4,7 @@ import base64
 import io
 import json
 from collections.abc import Callable, Iterator
+from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
@@ -59,9 +60,9 @@ def opened(browser: Browser, serve: Serve) -> Iterator[Open]:
 
     yield open_page
     for page in pages:
-        told = page.told
-        assert [line for line in told["console"] if "404" not in line] == []
-        assert told["errors"] == []
+        reported = page.reported
+        assert [line for line in reported["console"] if "404" not in line] == []
+        assert reported["errors"] == []
         page.close()
 
 
@@ -118,9 +119,7 @@ def camera_of(page: Page, screen: tuple[int, int] = SCREEN) -> Camera:
 
 
 def show(page: Page, toggles: Toggles, frame: int, rate: float) -> None:
-    names = {"splats": "splats", "geometry": "geometry", "template": "mesh", "skeleton": "skeleton", "shadow": "shadow"}
-    shown = {web: getattr(toggles, name) for name, web in names.items()}
-    page.evaluate(f"Object.assign(player.show, {json.dumps(shown)})")
+    page.evaluate(f"Object.assign(player.show, {json.dumps(asdict(toggles))})")
     page.evaluate(f"player.time = {frame / rate}")
 
 
@@ -290,11 +289,11 @@ def test_a_decode_that_is_spread_shows_what_one_at_once_shows(opened: Open, smal
 def test_a_handle_says_what_the_file_holds(opened: Open, small: Path) -> None:
     page, avatar = opened(a=small.read_bytes()), read(small)
     assert load(page) == ""
-    told = json.loads(page.evaluate("JSON.stringify({ ...avatar, clip: player.clip })"))
+    reported = json.loads(page.evaluate("JSON.stringify({ ...avatar, clip: player.clip })"))
     frames, rate = len(avatar.clips[0]), avatar.encoding.rate
     clips = [{"name": avatar.clips[0].name, "frames": frames, "seconds": frames / rate}]
-    assert (told["name"], told["clips"], told["clip"]) == (avatar.name, clips, avatar.clips[0].name)
-    assert told["splats"] == len(avatar.rig.texels.texels)
+    assert (reported["name"], reported["clips"], reported["clip"]) == (avatar.name, clips, avatar.clips[0].name)
+    assert reported["splats"] == len(avatar.rig.texels.texels)
 
 
 def test_a_handle_says_how_far_outside_of_training_the_pose_is(opened: Open, small: Path) -> None:

@@ -49,7 +49,7 @@ def test_a_device_that_is_lost_again_at_once_is_given_up_in_a_sentence(opened: O
 
 
 @pytest.mark.parametrize(
-    ("source", "told"),
+    ("source", "reported"),
     [
         ('"none.muaavatar"', "none.muaavatar cannot be fetched: the server answers 404 Not Found."),
         ('"http://127.0.0.1:9/a.muaavatar"', "a.muaavatar cannot be fetched: the server is out of reach"),
@@ -60,12 +60,12 @@ def test_a_device_that_is_lost_again_at_once_is_given_up_in_a_sentence(opened: O
     ],
     ids=["absent", "out of reach", "half", "damaged", "bytes", "file"],
 )
-def test_a_file_that_is_wrong_is_a_sentence(opened: Open, small: Path, source: str, told: str) -> None:
+def test_a_file_that_is_wrong_is_a_sentence(opened: Open, small: Path, source: str, reported: str) -> None:
     content = small.read_bytes()
     damaged = bytearray(content)
     damaged[-1] ^= 1
     page = opened(half=content[: len(content) // 2], damaged=bytes(damaged))
-    assert re.match(told, load(page, source))
+    assert re.match(reported, load(page, source))
     assert page.evaluate("player.avatars.length") == 0
 
 
@@ -93,14 +93,14 @@ def test_an_element_that_changes_before_its_first_picture_shows_one(
     site: Site = {**player_files(), "index.html": PLAIN, "a.muaavatar": small.read_bytes()}
     page = browser.page(serve(site), size=(160, 200))
     page.wait("Boolean(customElements.get('mua-avatar'))")
-    page.evaluate(f"""globalThis.element = document.querySelector("mua-avatar"), globalThis.told = [];
+    page.evaluate(f"""globalThis.element = document.querySelector("mua-avatar"), globalThis.reported = [];
       for (const kind of ["load", "error"])
-        element.addEventListener(kind, ({{ detail }}) => told.push(detail.message ?? kind));
+        element.addEventListener(kind, ({{ detail }}) => reported.push(detail.message ?? kind));
       element.setAttribute("src", "a.muaavatar");
-      setTimeout(() => ({change}, told.length = 0), {after});""")
-    page.wait("told.length > 0 && element.firstPicture > 0")
-    assert page.evaluate("[told, element.avatars.length]") == [["load"], 1]
-    assert page.told["errors"] == []
+      setTimeout(() => ({change}, reported.length = 0), {after});""")
+    page.wait("reported.length > 0 && element.firstPicture > 0")
+    assert page.evaluate("[reported, element.avatars.length]") == [["load"], 1]
+    assert page.reported["errors"] == []
     page.close()
 
 
@@ -124,7 +124,7 @@ def one_of_two(browser: Browser, serve: Serve, small: Path) -> Iterator[Page]:
     page.evaluate("import('./element.js').then(() => 0)")
     page.evaluate(f"{BESIDE}.then((it) => (globalThis.first = it, first.player.renderer.compile())).then(() => 0)")
     yield page
-    assert page.told["errors"] == []
+    assert page.reported["errors"] == []
     page.close()
 
 

@@ -39,6 +39,6 @@ def test_the_browser_meets_the_golden_case(page: Page, golden: Golden) -> None:
     stem = Path(golden.kernel).stem
     number = [other.case for other in ALL if other.kernel == golden.kernel].index(golden.case)
     found = page.evaluate(f'replay("{stem}", {number})')
-    assert page.told["console"] == []
+    assert page.reported["console"] == []
     words = {name: np.frombuffer(base64.b64decode(text), "<u4") for name, text in found.items()}
     assert_met(golden, words)

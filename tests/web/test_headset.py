@@ -232,8 +232,8 @@ def test_a_session_that_is_refused_is_a_sentence(opened: Open, small: Path, befo
     page = opened(before=FAKE, a=small.read_bytes())
     assert load(page) == ""
     page.evaluate(f"({before}, globalThis.said = [], player.onvr = (vr) => said.push(vr))")
-    told = page.evaluate("player.enterVR().catch((error) => [error.constructor.name, error.message])")
-    assert told == ["AvatarError", f"The headset cannot show the avatar: {said}"]
+    reported = page.evaluate("player.enterVR().catch((error) => [error.constructor.name, error.message])")
+    assert reported == ["AvatarError", f"The headset cannot show the avatar: {said}"]
     assert page.evaluate("[player.vr, said, headset.session?.ended ?? true]") == [False, [], True]
 
 
@@ -248,8 +248,8 @@ def test_a_picture_that_cannot_be_drawn_leaves_the_headset_and_is_told(opened: O
 
 def test_without_an_avatar_there_is_nothing_to_show(opened: Open) -> None:
     page = opened(before=FAKE)
-    told = page.evaluate("player.enterVR().catch((error) => error.message)")
-    assert told == "There is no avatar yet that a headset could show."
+    reported = page.evaluate("player.enterVR().catch((error) => error.message)")
+    assert reported == "There is no avatar yet that a headset could show."
 
 
 def test_what_is_disposed_of_leaves_the_headset(opened: Open, small: Path) -> None:

@@ -49,8 +49,8 @@ OLDEST = (20, 12)  # of Node, that unpacks what has no zlib header
 def lacking() -> bool:
     if shutil.which("node") is None:
         return True
-    told = subprocess.run(["node", "--version"], capture_output=True, text=True, check=True).stdout
-    return tuple(int(part) for part in told.lstrip("v").split(".")[:2]) < OLDEST
+    reported = subprocess.run(["node", "--version"], capture_output=True, text=True, check=True).stdout
+    return tuple(int(part) for part in reported.lstrip("v").split(".")[:2]) < OLDEST
 
 
 pytestmark = pytest.mark.skipif(lacking(), reason="needs Node 20.12 or later")
@@ -101,9 +101,9 @@ def test_malformed_files_get_the_same_sentence(tmp_path: Path, content: bytes) -
     expected = [(code, field) for code, field, _ in [*MALFORMED, *DAMAGED, *UNPACKABLE]]
     found = answers(tmp_path, files)
     assert [tuple(answer[:2]) for answer in found] == expected
-    told = [(answer, file) for answer, file in zip(found, files, strict=True) if answer[0] != "packed"]
+    reported = [(answer, file) for answer, file in zip(found, files, strict=True) if answer[0] != "packed"]
     sentences = [
-        (answer[2], python_answer(file)[2]) for answer, file in told
+        (answer[2], python_answer(file)[2]) for answer, file in reported
     ]  # a browser says of no stream how far it is sound
     assert [pair for pair in sentences if pair[0] != pair[1] and "one is negative" not in pair[0]] == []
 

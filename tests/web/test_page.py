@@ -33,9 +33,9 @@ def opened(browser: Browser, serve: Serve) -> Iterator[Open]:
 
 
 def _all_explained(page: Page) -> None:
-    told = page.told
-    assert told["errors"] == []
-    assert [line for line in told["console"] if "Failed to load resource" not in line] == []
+    reported = page.reported
+    assert reported["errors"] == []
+    assert [line for line in reported["console"] if "Failed to load resource" not in line] == []
 
 
 def part(name: str) -> str:
@@ -67,10 +67,10 @@ def test_the_camera_orbits_where_that_is_asked_for(opened: Open) -> None:
 
 
 def test_attributes_say_what_is_shown_and_from_where(opened: Open) -> None:
-    given = {"clip": "wave", "speed": "0.5", "show": "mesh,skeleton", "azimuth": "90", "elevation": "-30"}
+    given = {"clip": "wave", "speed": "0.5", "show": "template,skeleton", "azimuth": "90", "elevation": "-30"}
     page = opened({"src": "hero.muaavatar", **given})
     assert page.evaluate("[fake.clip, fake.speed]") == ["wave", 0.5]
-    assert page.evaluate("Object.keys(fake.show).filter((name) => fake.show[name])") == ["mesh", "skeleton"]
+    assert page.evaluate("Object.keys(fake.show).filter((name) => fake.show[name])") == ["template", "skeleton"]
     assert page.evaluate("[fake.camera.azimuth, fake.camera.elevation]") == pytest.approx([1.5708, -0.5236], abs=1e-4)
 
 
@@ -326,16 +326,16 @@ def test_the_times_name_stages_and_device(opened: Open) -> None:
 def test_the_page_asks_for_nothing_but_its_own_folder(opened: Open) -> None:
     page = opened()
     home = page.evaluate("location.origin")
-    assert [url for url in page.told["requests"] if not url.startswith((home, "blob:", "data:"))] == []
+    assert [url for url in page.reported["requests"] if not url.startswith((home, "blob:", "data:"))] == []
     assert "script-src 'self'" in page.evaluate("document.querySelector('meta[http-equiv]').content")
 
 
 def test_the_page_may_not_ask_for_anything_else(browser: Browser, serve: Serve) -> None:
     page = browser.page(serve(fake_site()))
     elsewhere = serve({"x.js": b"globalThis.foreign = true"})
-    told = "addEventListener('securitypolicyviolation', (event) => done(event.effectiveDirective))"
+    reported = "addEventListener('securitypolicyviolation', (event) => done(event.effectiveDirective))"
     for code in (f"fetch('{elsewhere}x.js').catch(() => {{}})", f"import('{elsewhere}x.js').catch(() => {{}})"):
-        directive = page.evaluate(f"new Promise((done) => {{ {told}; {code}; }})")
+        directive = page.evaluate(f"new Promise((done) => {{ {reported}; {code}; }})")
         assert directive in ("connect-src", "script-src-elem")
     assert page.evaluate("globalThis.foreign ?? null") is None
     page.close()

@@ -92,13 +92,13 @@ def test_a_paused_element_of_another_size_is_drawn_again(opened: Open) -> None:
 
 def test_attributes_count_also_while_an_avatar_loads(opened: Open) -> None:
     page = opened({"src": "hero.muaavatar"}, until=f"{SENTENCE} === 'Loading half of it'", before=HOLD)
-    asked = {"clip": "wave", "speed": "2", "level": "384", "show": "mesh"}
+    asked = {"clip": "wave", "speed": "2", "level": "384", "show": "template"}
     for name, value in asked.items():
         page.evaluate(f"{ELEMENT}.setAttribute('{name}', '{value}')")
     page.evaluate("go()")
     page.wait(LOADED)
     page.evaluate(SETTLED)
-    assert page.evaluate("[fake.clip, fake.speed, fake.level, fake.show.mesh, fake.show.splats]") == [
+    assert page.evaluate("[fake.clip, fake.speed, fake.level, fake.show.template, fake.show.splats]") == [
         *("wave", 2, 384),
         *(True, False),
     ]
@@ -117,19 +117,19 @@ def test_attributes_count_after_it_is_loaded_and_leave_the_others(opened: Open) 
 
 
 def test_events_tell_of_each_avatar_and_of_the_first_picture_once(opened: Open) -> None:
-    listen = """addEventListener("DOMContentLoaded", () => { globalThis.told = [];
-      const tell = ({ type, detail }) => told.push([type, detail?.message ?? detail?.name ?? ""]);
+    listen = """addEventListener("DOMContentLoaded", () => { globalThis.reported = [];
+      const tell = ({ type, detail }) => reported.push([type, detail?.message ?? detail?.name ?? ""]);
       for (const name of ["load", "error", "picture"])
         document.querySelector("mua-avatar").addEventListener(name, tell);
     })"""
     page = opened(files={"other": avatar("other")}, before=listen)
-    page.wait("told.length === 2")
+    page.wait("reported.length === 2")
     page.evaluate(f"{ELEMENT}.setAttribute('src', 'other.muaavatar')")
-    page.wait("told.length === 3")
+    page.wait("reported.length === 3")
     page.evaluate(f"{ELEMENT}.add('absent.muaavatar')")
-    page.wait("told.length === 4")
-    assert page.evaluate("told.slice(0, 3)") == [["picture", ""], ["load", "hero"], ["load", "other"]]
-    assert "404" in page.evaluate("told[3][1]")
+    page.wait("reported.length === 4")
+    assert page.evaluate("reported.slice(0, 3)") == [["picture", ""], ["load", "hero"], ["load", "other"]]
+    assert "404" in page.evaluate("reported[3][1]")
 
 
 def test_frames_go_round_at_both_ends_of_a_clip(opened: Open) -> None:

@@ -157,7 +157,7 @@ def test_a_page_with_the_policy_of_the_guide_plays_and_shows_its_poster(browser:
     page.wait(f"{part('.poster')}?.naturalWidth > 0")
     page.evaluate("go()")
     page.wait(LOADED)
-    assert [line for line in page.told["console"] if "Content Security Policy" in line] == []
+    assert [line for line in page.reported["console"] if "Content Security Policy" in line] == []
     page.close()
 
 

@@ -15,7 +15,7 @@ GIVEN = {
     "src": "hero.muaavatar",
     "clip": "wave",
     "speed": 0.5,
-    "show": "mesh",
+    "show": "template",
     "level": 384,
     "budget": 5000,
     "stereo": True,
@@ -28,7 +28,9 @@ GIVEN = {
     "poster": "icon.svg",
     "alt": "A dancer",
 }
-PLAYED = "[fake.clip, fake.speed, fake.show.mesh, fake.show.splats, fake.level, fake.budget, fake.stereo, fake.follow]"
+PLAYED = (
+    "[fake.clip, fake.speed, fake.show.template, fake.show.splats, fake.level, fake.budget, fake.stereo, fake.follow]"
+)
 WANTED = ["wave", 0.5, True, False, 384, 5000, True, True]
 
 
@@ -47,7 +49,7 @@ def test_properties_that_are_set_before_an_avatar_loads_count(browser: Browser, 
     assert page.evaluate(read) == GIVEN
     assert page.evaluate(f"Object.keys({ELEMENT})") == ["firstPicture", "offersVR"], "each is a property of the class"
     assert page.evaluate(f"[{part('.bar')}.hidden, {part('canvas')}.ariaLabel]") == [False, "A dancer"]
-    assert page.told["errors"] == []
+    assert page.reported["errors"] == []
     page.close()
 
 
@@ -102,14 +104,14 @@ def test_properties_are_taken_away_by_none(opened: Open) -> None:
 
 
 def test_what_cannot_be_shown_is_said_and_the_picture_stays(opened: Open) -> None:
-    listen = """addEventListener("DOMContentLoaded", () => { globalThis.told = [];
-      document.querySelector("mua-avatar").addEventListener("error", ({ detail }) => told.push(detail.message));
+    listen = """addEventListener("DOMContentLoaded", () => { globalThis.reported = [];
+      document.querySelector("mua-avatar").addEventListener("error", ({ detail }) => reported.push(detail.message));
     })"""
     page = opened({"src": "hero.muaavatar", "show": "splat"}, before=listen)
-    said = 'show="splat": "splat" cannot be shown, only splats, geometry, mesh, skeleton, shadow.'
-    assert page.evaluate(f"[fake.show.splats, told, {SENTENCE}]") == [True, [said], said]
-    page.evaluate(f"{ELEMENT}.show = 'mesh'")
-    assert page.evaluate("[fake.show.splats, fake.show.mesh]") == [False, True]
+    said = 'show="splat": "splat" cannot be shown, only splats, geometry, template, skeleton, shadow.'
+    assert page.evaluate(f"[fake.show.splats, reported, {SENTENCE}]") == [True, [said], said]
+    page.evaluate(f"{ELEMENT}.show = 'template'")
+    assert page.evaluate("[fake.show.splats, fake.show.template]") == [False, True]
 
 
 @pytest.mark.parametrize(
@@ -129,27 +131,27 @@ def test_what_cannot_be_asked_for_is_said(opened: Open, attribute: str, value: s
 
 
 def test_a_clip_of_another_avatar_may_be_set_before_its_src(opened: Open) -> None:
-    listen = """addEventListener("DOMContentLoaded", () => { globalThis.told = [];
-      document.querySelector("mua-avatar").addEventListener("error", ({ detail }) => told.push(detail.message));
+    listen = """addEventListener("DOMContentLoaded", () => { globalThis.reported = [];
+      document.querySelector("mua-avatar").addEventListener("error", ({ detail }) => reported.push(detail.message));
     })"""
     other = avatar("other", [{"name": "bow", "seconds": 1.0, "frames": 30}])
     page = opened({"src": "hero.muaavatar"}, files={"other": other}, before=listen)
     page.evaluate(f"(({ELEMENT}.clip = 'bow'), ({ELEMENT}.src = 'other.muaavatar'))")
     page.wait("fake.avatars[0]?.name === 'other'")
     page.evaluate(SETTLED)
-    assert page.evaluate("[fake.clip, told]") == ["bow", []]
+    assert page.evaluate("[fake.clip, reported]") == ["bow", []]
 
 
 def test_an_element_tells_how_far_it_is_and_when_it_is_loaded(opened: Open) -> None:
     page = opened()
-    page.evaluate("""(() => { globalThis.told = [];
+    page.evaluate("""(() => { globalThis.reported = [];
       const element = document.querySelector("mua-avatar");
-      element.addEventListener("progress", ({ detail }) => told.push([detail.totalProgress, element.loaded]));
-      element.addEventListener("load", () => told.push(["load", element.loaded]));
+      element.addEventListener("progress", ({ detail }) => reported.push([detail.totalProgress, element.loaded]));
+      element.addEventListener("load", () => reported.push(["load", element.loaded]));
       element.src = "hero.muaavatar?again";
     })()""")
-    page.wait("told.length === 2")
-    assert page.evaluate("told") == [[0.5, False], ["load", True]]
+    page.wait("reported.length === 2")
+    assert page.evaluate("reported") == [[0.5, False], ["load", True]]
     page.evaluate(f"{ELEMENT}.src = 'absent.muaavatar'")
     assert page.evaluate(f"{ELEMENT}.loaded") is False
     page.wait(f"{SENTENCE}.includes('404')")

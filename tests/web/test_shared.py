@@ -54,10 +54,10 @@ def opened(browser: Browser, serve: Serve) -> Iterator[Open]:
 
 
 def _explained(page: Page) -> None:
-    told = page.told
-    assert told["errors"] == []
+    reported = page.reported
+    assert reported["errors"] == []
     known = ("Failed to load resource", "blocked by CORS policy")
-    assert [line for line in told["console"] if not any(word in line for word in known)] == []
+    assert [line for line in reported["console"] if not any(word in line for word in known)] == []
 
 
 def test_a_shared_folder_plays(opened: Open, folder: dict[str, Content]) -> None:
@@ -65,7 +65,7 @@ def test_a_shared_folder_plays(opened: Open, folder: dict[str, Content]) -> None
     assert page.evaluate(f"[{ELEMENT}.player.playing, {ELEMENT}.avatars.length]") == [True, 1]
     page.wait(f"{ELEMENT}.player.time > 0")
     home = page.evaluate("location.origin")
-    assert all(url.startswith((home, "blob:")) for url in page.told["requests"])
+    assert all(url.startswith((home, "blob:")) for url in page.reported["requests"])
 
 
 def test_the_first_picture_is_drawn_once(opened: Open, folder: dict[str, Content]) -> None:
@@ -121,9 +121,9 @@ def test_a_single_file_plays_from_the_disk(browser: Browser, avatar_file: Path, 
     (tmp_path / "one.html").write_text(single_page([avatar_file], Shown("One file")), encoding="utf-8")
     page = browser.page(f"file://{tmp_path / 'one.html'}", size=(320, 400))
     page.wait(DRAWN)
-    told = page.told
-    assert (told["console"], told["errors"]) == ([], [])
-    assert all(url.startswith(("file:", "blob:", "data:")) for url in told["requests"])
+    reported = page.reported
+    assert (reported["console"], reported["errors"]) == ([], [])
+    assert all(url.startswith(("file:", "blob:", "data:")) for url in reported["requests"])
     assert page.evaluate(f"{ELEMENT}.avatars.length") == 1
     page.close()
 

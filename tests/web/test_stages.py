@@ -105,7 +105,7 @@ def test_the_rest_is_expected_by_how_fast_bytes_come_and_whether_they_do(
 
 
 @pytest.mark.parametrize(
-    ("steps", "put", "told"),
+    ("steps", "put", "reported"),
     [
         (["ready", "part 1", "whole"], ["part 1", "whole"], ["part 1"]),
         (["ready", "part 1", "part 2", "whole"], ["part 1", "part 2", "whole"], ["part 1", "part 2"]),
@@ -118,9 +118,9 @@ def test_the_rest_is_expected_by_how_fast_bytes_come_and_whether_they_do(
     ids=["part", "parts", "while it compiles", "newest", "whole by then", "failed", "failed by then"],
 )
 def test_a_part_is_shown_unless_more_is_there_by_the_time_that_the_device_can_draw(
-    steps: list[str], put: list[str], told: list[str]
+    steps: list[str], put: list[str], reported: list[str]
 ) -> None:
-    assert node("shown", *steps) == [{"put": put, "told": told}]
+    assert node("shown", *steps) == [{"put": put, "reported": reported}]
 
 
 @pytest.mark.parametrize("storage", ["f16", "i8"])
@@ -209,7 +209,7 @@ def show(page: Page, url: str, until: str) -> None:
     page.wait(f"{ELEMENT}.firstPicture > 0 && {ELEMENT}.avatars.length === 1 && {until}")
 
 
-@pytest.mark.parametrize(("stage", "splats"), [(0, False), (1, True)], ids=["mesh", "coarse splats"])
+@pytest.mark.parametrize(("stage", "splats"), [(0, False), (1, True)], ids=["template", "coarse splats"])
 def test_the_first_half_of_a_file_is_a_picture(
     page: Page, halves: tuple[Give, Event], packed: bytes, stage: int, splats: bool
 ) -> None:
@@ -234,7 +234,7 @@ def test_the_first_half_of_a_file_is_a_picture(
     assert seen(page) > 0
 
 
-def test_a_mesh_does_not_take_the_place_of_a_poster(page: Page, halves: tuple[Give, Event], packed: bytes) -> None:
+def test_a_template_does_not_take_the_place_of_a_poster(page: Page, halves: tuple[Give, Event], packed: bytes) -> None:
     give, rest = halves
     end = int(parse_checked(packed)["stages"][0])
     page.evaluate(f"{ELEMENT}.setAttribute('poster', 'icon.svg')")

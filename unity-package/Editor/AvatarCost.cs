@@ -4,7 +4,7 @@ using Mua.Format;
 namespace Mua.Editor
 {
     /// <summary>
-    /// What one part of an avatar costs: learnt numbers, and floating-point operations of a frame with a multiply-add as
+    /// What one part of an avatar costs: trained parameters, and floating-point operations of a frame with a multiply-add as
     /// two; null where it has none. Counted as in python/mua/asset/count.py.
     /// </summary>
     internal sealed class AvatarCost

@@ -8,16 +8,16 @@ using UnityEngine;
 namespace Mua.Editor
 {
     /// <summary>
-    /// Makes an AvatarAsset of a `.muaavatar` file. Of a file that is not sound, or cannot be read, it makes one that says
-    /// why, and logs an import error.
+    /// Makes an AvatarAsset of a `.muaavatar` file. If the file is damaged or cannot be read, the asset
+    /// says why, and an import error is logged.
     /// </summary>
     [ScriptedImporter(Version, Extension, AllowCaching = true)]
     internal sealed class AvatarImporter : ScriptedImporter
     {
-        /// <summary>Of file names, without a dot.</summary>
+        /// <summary>File extension, without the dot.</summary>
         public const string Extension = "muaavatar";
 
-        private const int Version = 2; // to be raised whenever what is made of a file changes
+        private const int Version = 2; // raise it whenever the importer makes something else of a file
         private const string AvatarId = "avatar", ThumbnailId = "thumbnail"; // by which references find the parts
 
         public override void OnImportAsset(AssetImportContext ctx)

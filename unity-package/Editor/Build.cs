@@ -14,7 +14,7 @@ namespace Mua.Editor
     /// <summary>
     /// Builds the player without a window: `-executeMethod Mua.Editor.Build.Quest -muaOutput PATH [-muaDevelopment]`. Ends
     /// the editor with 0 and a file, or with 1 and `MUA-BUILD FAIL` and a sentence in the log, or with 3 and
-    /// `MUA-BUILD AGAIN` where packages or scripts were brought and the same command is to be run once more. Not yet
+    /// `MUA-BUILD AGAIN` where packages or scripts were added and the same command has to be run once more. Not yet
     /// verified in the editor.
     /// </summary>
     public static class Build

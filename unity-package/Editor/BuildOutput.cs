@@ -29,10 +29,10 @@ namespace Mua.Editor
             }
         }
 
-        /// <summary>Of the whole build.</summary>
+        /// <summary>Path of the finished build.</summary>
         public string Path { get; }
 
-        /// <summary>What Unity is to write; other files that it leaves beside it go with Discard.</summary>
+        /// <summary>Path that Unity writes to; Discard removes it with all files beside it.</summary>
         public string Unfinished => System.IO.Path.Combine(Part, isFile ? System.IO.Path.GetFileName(Path) : Program);
 
         private string Part => Path + ".part";
@@ -56,7 +56,7 @@ namespace Mua.Editor
             }
         }
 
-        /// <summary>Gives the build its name.</summary>
+        /// <summary>Moves the finished build to Path.</summary>
         public void Finish()
         {
             if (isFile)
@@ -69,13 +69,13 @@ namespace Mua.Editor
             }
         }
 
-        /// <summary>Removes what is not whole.</summary>
+        /// <summary>Removes an unfinished build.</summary>
         public void Discard()
         {
             Remove(Part);
         }
 
-        /// <summary>Bytes of the whole build.</summary>
+        /// <summary>Size of the finished build, bytes.</summary>
         public long Size()
         {
             return isFile

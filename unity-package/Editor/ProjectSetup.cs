@@ -26,13 +26,13 @@ namespace Mua.Editor
             Start(BuildTarget.StandaloneWindows64);
         }
 
-        /// <summary>A sentence for each thing that is not as it should be for the platform that is active.</summary>
+        /// <summary>A sentence for each setting that is wrong for the active platform.</summary>
         public static IReadOnlyList<string> Check()
         {
             return Check(Nearest());
         }
 
-        /// <summary>The same for Android, which is Quest, or StandaloneWindows64, which is PC Link. Changes nothing.</summary>
+        /// <summary>A sentence for each setting that is wrong for Android (Quest) or StandaloneWindows64 (PC Link); changes nothing.</summary>
         public static IReadOnlyList<string> Check(BuildTarget target)
         {
             string unable = Unable(target);
@@ -165,7 +165,7 @@ namespace Mua.Editor
         Done = 0,
         Failed = 1,
 
-        /// <summary>Packages or scripts were brought; the same command is to be run once more.</summary>
+        /// <summary>Packages or scripts were added; run the same command once more.</summary>
         Again = 3, // 2 is Unity's own, for tests
     }
 

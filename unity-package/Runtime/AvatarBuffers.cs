@@ -38,7 +38,7 @@ namespace Mua
             }
         }
 
-        /// <summary>The same file on the CPU.</summary>
+        /// <summary>The file that the buffers hold, on the CPU.</summary>
         public AvatarFile Avatar { get; }
 
         public LayerBuffers[] CoarseMlp { get; }
@@ -49,10 +49,10 @@ namespace Mua
 
         public BranchBuffers Appearance { get; }
 
-        /// <summary>Of detail, the finest first.</summary>
+        /// <summary>Levels of detail, the finest first.</summary>
         public LevelBuffers[] Levels { get; }
 
-        /// <summary>Splats of each.</summary>
+        /// <summary>Number of splats of each level.</summary>
         public int[] SplatCounts { get; }
 
         /// <summary>The side of a texel of the finest level, metres.</summary>
@@ -126,7 +126,7 @@ namespace Mua
         }
 
         /// <summary>
-        /// The same filter with as many taps that a thread of InverseDwt finishes whole words: twice an odd number.
+        /// The filter padded to twice an odd number of taps, so that a thread of InverseDwt writes whole words.
         /// </summary>
         private static float[] WholeWords(double[] taps)
         {

@@ -16,16 +16,16 @@ namespace Mua
         /// <summary>Null where the draw is not indexed.</summary>
         public GraphicsBuffer Indices { get; }
 
-        /// <summary>Of an indirect draw, from byte 0; null where Count and Instances are what is drawn.</summary>
+        /// <summary>Arguments of an indirect draw, from byte 0; null for a direct draw of Count and Instances.</summary>
         public GraphicsBuffer Arguments { get; }
 
         /// <summary>Vertices, or indices where there are any.</summary>
         public int Count { get; }
 
-        /// <summary>Of a direct draw, which the engine multiplies where it draws both eyes by instancing.</summary>
+        /// <summary>Instances of a direct draw; the engine multiplies them if it draws both eyes by instancing.</summary>
         public int Instances { get; }
 
-        /// <summary>So many vertices or, with `indices`, so many of them.</summary>
+        /// <summary>A draw of `count` vertices, or of `count` indices where `indices` are given.</summary>
         public static AvatarDraw Direct(
             Material material, int pass, MaterialPropertyBlock properties, int count, GraphicsBuffer indices = null)
         {

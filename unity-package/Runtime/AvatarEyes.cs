@@ -10,10 +10,10 @@ namespace Mua
     {
         public const int Most = 2;
 
-        /// <summary>Diagonals of a pose's box that its splats may leave it by; so far SplatProject keys their depth.</summary>
+        /// <summary>How far splats may lie outside the box of their pose, in its diagonals; SplatProject keys their depth so far.</summary>
         public const float SplatReach = 0.5f;
 
-        /// <summary>That its shadow may, where the light comes from some 20 degrees above the ground or more.</summary>
+        /// <summary>How far its shadow may, if the light comes from 20 degrees above the ground or more.</summary>
         public const float ShadowReach = 2;
 
         private const int Corners = 8; // of a box
@@ -41,7 +41,7 @@ namespace Mua
         /// <summary>Mean of the eyes' positions in the right-handed world, metres.</summary>
         public Vector4 Middle { get; private set; }
 
-        /// <summary>Of the indirect draw: two where both eyes are drawn by instancing, which does not multiply it.</summary>
+        /// <summary>Instances of the indirect draw: two if both eyes are drawn by instancing, since the engine does not multiply these.</summary>
         public int Instances { get; private set; }
 
         /// <summary>Starts anew with a screen of so many pixels; Add the eyes after it, from the left.</summary>

@@ -49,7 +49,7 @@ namespace Mua
 
         public AvatarBuffers Avatar { get; }
 
-        /// <summary>Of the decode that is shown; the buffers hold the finest.</summary>
+        /// <summary>Level of detail of the decode that is shown; the buffers have room for the finest.</summary>
         public LevelBuffers Level => shown.Level;
 
         public int SplatCount => Level.SplatCount;
@@ -60,7 +60,7 @@ namespace Mua
         /// <summary>[M, 8] words of all avatars, given by SplatFrame.</summary>
         public GraphicsBuffer Splats { get; private set; }
 
-        /// <summary>Where this avatar's begin.</summary>
+        /// <summary>Index of this avatar's first splat.</summary>
         public int FirstSplat { get; private set; }
 
         /// <summary>[V, 3] canonical vertices of the decode that is shown, metres.</summary>
@@ -72,7 +72,7 @@ namespace Mua
         /// <summary>[2 V] dual quaternions of the last pose, to the world divided by Size.</summary>
         public GraphicsBuffer VertexDq { get; private set; }
 
-        /// <summary>[2 J] likewise.</summary>
+        /// <summary>[2 J] dual quaternions of the joints, likewise.</summary>
         public GraphicsBuffer Joints { get; private set; }
 
         /// <summary>Whether a decode is shown: until then the buffers hold nothing.</summary>
@@ -84,7 +84,7 @@ namespace Mua
         /// <summary>How far outside of training the pose is that is shown, 0 to 1.</summary>
         public double Outside => shown.Outside;
 
-        /// <summary>Of the decode that was begun and is not shown.</summary>
+        /// <summary>Parts still missing from the decode that was begun and is not shown.</summary>
         public int PartsLeft => ChannelDecoder.Parts - decoded;
 
         /// <summary>The last pose, in the avatar's space.</summary>
@@ -109,7 +109,7 @@ namespace Mua
         /// <param name="rotations">[k, J, 4] local joint rotations, newest first.</param>
         /// <param name="translations">[k, J, 3] local joint translations, metres.</param>
         /// <param name="place">Where the avatar stands.</param>
-        /// <param name="level">Of detail, 0 being the finest.</param>
+        /// <param name="level">Level of detail; 0 is the finest.</param>
         public void Decode(
             CommandBuffer commands, ReadOnlySpan<double> rotations, ReadOnlySpan<double> translations,
             in AvatarPlace place, int level = 0)
@@ -118,7 +118,7 @@ namespace Mua
             Repose(commands, rotations, translations, place);
         }
 
-        /// <summary>The same without posing: all parts of a decode.</summary>
+        /// <summary>Appends all parts of a decode, without posing.</summary>
         public void DecodeChannels(
             CommandBuffer commands, ReadOnlySpan<double> rotations, ReadOnlySpan<double> translations, int level = 0)
         {

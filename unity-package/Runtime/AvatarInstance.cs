@@ -46,7 +46,7 @@ namespace Mua
         /// <summary>Why it has failed, or what is wrong with the pose; empty where all is well.</summary>
         public string Message { get; private set; } = "";
 
-        /// <summary>Of loading, from 0 to 1.</summary>
+        /// <summary>Progress of loading, from 0 to 1.</summary>
         public float Progress => State == AvatarState.Ready ? 1 : loader == null ? 0 : loader.Progress;
 
         /// <summary>The file's name for the avatar; empty until it is ready.</summary>
@@ -63,7 +63,7 @@ namespace Mua
 
         public AvatarViews Views => owner.Views;
 
-        /// <summary>Of detail, for the next Record.</summary>
+        /// <summary>Level of detail for the next Record.</summary>
         public int Level
         {
             get => ChoosesLevel ? level : FixedLevel;

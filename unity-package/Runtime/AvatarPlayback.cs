@@ -9,7 +9,7 @@ namespace Mua
     /// <summary>The clips of an avatar, which of them plays and how far it is.</summary>
     internal sealed class AvatarPlayback
     {
-        /// <summary>That of no avatar.</summary>
+        /// <summary>Playback without clips, for no avatar.</summary>
         public static readonly AvatarPlayback None = new AvatarPlayback(0);
 
         private readonly ClipSampler[] clips;
@@ -38,7 +38,7 @@ namespace Mua
 
         public IReadOnlyList<string> Names => names;
 
-        /// <summary>Of the clip that plays; setting it starts that clip at its beginning.</summary>
+        /// <summary>Index of the clip that plays; setting it starts that clip at its beginning.</summary>
         public int Index
         {
             get => index;
@@ -57,7 +57,7 @@ namespace Mua
             set => seconds = IsEmpty ? 0 : value;
         }
 
-        /// <summary>At the avatar's rate; setting it goes to the frame's beginning.</summary>
+        /// <summary>Frame of the clip at the avatar's rate; setting it goes to the frame's beginning.</summary>
         public int Frame
         {
             get => IsEmpty ? 0 : (int)clips[index].Position(seconds);
@@ -66,7 +66,7 @@ namespace Mua
 
         public int FrameCount => IsEmpty ? 0 : clips[index].FrameCount;
 
-        /// <summary>Starts the clip of that name, or the first; whether there is one of that name.</summary>
+        /// <summary>Starts the clip with this name, or else the first; returns whether the name exists.</summary>
         public bool Choose(string name)
         {
             int found = Array.IndexOf(names, name);
@@ -74,13 +74,13 @@ namespace Mua
             return found >= 0;
         }
 
-        /// <summary>Has the next Sample give its pose anew.</summary>
+        /// <summary>Makes the next Sample compute its pose anew.</summary>
         public void Forget()
         {
             shown = double.NaN;
         }
 
-        /// <summary>Goes on by so many seconds and poses the avatar; whether the pose is another than before.</summary>
+        /// <summary>Advances by so many seconds and poses the avatar; returns whether the pose has changed.</summary>
         public bool Sample(AvatarPose pose, double step)
         {
             Seconds += step;

@@ -16,20 +16,20 @@ namespace Mua
         /// <summary>The surface through the splats' centres, shaded.</summary>
         Geometry = 2,
 
-        /// <summary>The coarse template mesh, shaded.</summary>
-        Mesh = 4,
+        /// <summary>The template, the coarse mesh that the joints move, shaded.</summary>
+        Template = 4,
 
         /// <summary>The bones.</summary>
         Skeleton = 8,
 
-        /// <summary>The shadow of the template mesh on other objects.</summary>
+        /// <summary>The shadow of the template on other objects.</summary>
         Shadow = 16,
     }
 
     /// <summary>How many texels of an avatar are shown.</summary>
     public enum AvatarLevel
     {
-        /// <summary>As many as can be told apart at its distance, within the AvatarBudget where there is one.</summary>
+        /// <summary>As many as can be distinguished at its distance, within the AvatarBudget if there is one.</summary>
         Automatic,
 
         /// <summary>All.</summary>
@@ -81,7 +81,7 @@ namespace Mua
         [SerializeField, Tooltip("Playback speed; 1 plays the clip at its recorded speed.")]
         private float speed = 1;
 
-        [SerializeField, Tooltip("What is drawn: splats, their surface as geometry, the coarse mesh, its bones, its shadow.")]
+        [SerializeField, Tooltip("What is drawn: splats, their surface as geometry, the template (the coarse mesh), its bones, its shadow.")]
         private AvatarViews views = AvatarViews.Splats | AvatarViews.Shadow;
 
         [SerializeField]
@@ -209,7 +209,7 @@ namespace Mua
 
         private AvatarPlayback Playback => shown == null ? AvatarPlayback.None : shown.Playback;
 
-        /// <summary>Those of active GameObjects in the open scenes, in no order.</summary>
+        /// <summary>All AvatarRenderers of active GameObjects in the open scenes, in no order.</summary>
         internal static AvatarRenderer[] All()
         {
 #if UNITY_6000_4_OR_NEWER // where the one below is deprecated
@@ -285,7 +285,7 @@ namespace Mua
             shown?.Move(IsPlaying && Application.isPlaying ? Time.deltaTime * speed : 0);
         }
 
-        /// <summary>Has what the inspector changed take effect.</summary>
+        /// <summary>Applies what the inspector changed.</summary>
         private void Revise()
         {
             isEdited = false;

@@ -35,7 +35,7 @@ namespace Mua
         /// <summary>Draws sorted splats.</summary>
         internal Shader Splat => splat;
 
-        /// <summary>Draws detailed geometry, the template mesh, the skeleton and shadows.</summary>
+        /// <summary>Draws detailed geometry, the template, the skeleton and shadows.</summary>
         internal Shader Surface => surface;
 
         /// <summary>The package's own; null where its import failed.</summary>

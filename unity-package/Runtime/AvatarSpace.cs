@@ -61,7 +61,7 @@ namespace Mua
         /// <summary>How many times as large as baked.</summary>
         public float Size { get; }
 
-        /// <summary>Of Unity's position, rotation and size.</summary>
+        /// <summary>A place from Unity's position and rotation, and a size.</summary>
         public AvatarPlace(Vector3 position, Quaternion rotation, float size = 1)
         {
             Size = Mathf.Max(size, LeastSize);
@@ -98,7 +98,7 @@ namespace Mua
 
         public AvatarPlace Value { get; private set; }
 
-        /// <summary>Takes where `transform` is now; whether that is another place than before.</summary>
+        /// <summary>Reads where `transform` is now; returns whether it has moved.</summary>
         public bool Follow(Transform transform)
         {
             transform.GetPositionAndRotation(out Vector3 at, out Quaternion turned);

@@ -8,7 +8,7 @@ using UnityEngine.Rendering;
 namespace Mua
 {
     /// <summary>
-    /// What is drawn of one avatar beside its splats: detailed geometry, template mesh, bones, cast shadow. The buffers of
+    /// What is drawn of one avatar beside its splats: detailed geometry, template, bones, cast shadow. The buffers of
     /// a view are made when it is first wanted, the texel grid on another thread; one that fails is reported once.
     /// </summary>
     internal sealed class AvatarSurface : IDisposable
@@ -19,7 +19,7 @@ namespace Mua
         private SurfaceDraw draw;
         private Task<TexelGrid> building;
         private GraphicsBuffer ringStarts, ring, gridIndices; // of the geometry
-        private GraphicsBuffer meshIndices;
+        private GraphicsBuffer templateIndices;
         private GraphicsBuffer rest, strokes; // of the bones
         private AvatarViews refused;
 
@@ -29,16 +29,16 @@ namespace Mua
             this.frame = frame;
         }
 
-        /// <summary>Adds what is drawn before the splats: geometry and mesh, which write depth.</summary>
+        /// <summary>Adds what is drawn before the splats: geometry and template, which write depth.</summary>
         public void AddOpaque(List<AvatarDraw> draws, AvatarEyes eyes, AvatarViews views)
         {
             if (IsReady(views, AvatarViews.Geometry))
             {
                 draws.Add(draw.BindGeometry(frame, eyes, ringStarts, ring, gridIndices));
             }
-            if (IsReady(views, AvatarViews.Mesh))
+            if (IsReady(views, AvatarViews.Template))
             {
-                draws.Add(draw.BindMesh(frame, eyes, meshIndices));
+                draws.Add(draw.BindTemplate(frame, eyes, templateIndices));
             }
         }
 
@@ -66,7 +66,7 @@ namespace Mua
                 shadowCastingMode = ShadowCastingMode.ShadowsOnly,
                 receiveShadows = false,
             };
-            Graphics.RenderPrimitivesIndexed(parameters, MeshTopology.Triangles, meshIndices, meshIndices.count);
+            Graphics.RenderPrimitivesIndexed(parameters, MeshTopology.Triangles, templateIndices, templateIndices.count);
         }
 
         public void Dispose()
@@ -142,12 +142,12 @@ namespace Mua
 
         private bool MakeMesh()
         {
-            if (meshIndices == null)
+            if (templateIndices == null)
             {
                 int[] corners = frame.Avatar.Avatar.Template.Faces.Integers.ToArray();
                 GraphicsBuffer indices = buffers.Indices("mesh_indices", corners.Length);
                 indices.SetData(corners);
-                meshIndices = indices;
+                templateIndices = indices;
             }
             return true;
         }

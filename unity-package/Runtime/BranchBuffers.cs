@@ -17,7 +17,7 @@ namespace Mua
             Layout = new[] { (int)tensor.Type, perScale, rows == 0 ? 0 : upload.StoredWords };
         }
 
-        /// <summary>Of numbers that are no part of the file, as f32.</summary>
+        /// <summary>A buffer of f32 numbers that are not in the file.</summary>
         public StoredBuffer(Upload floats)
         {
             upload = floats;

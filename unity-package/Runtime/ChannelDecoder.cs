@@ -7,14 +7,14 @@ namespace Mua
 {
     /// <summary>
     /// From a window of poses to channels: the dispatches of a decode, in parts that displayed frames can share, in the order
-    /// of python/mua/player/channels.py. The buffers between the kernels are made once; no part hands on to another.
+    /// of python/mua/player/channels.py. The buffers between the kernels are made once; no part reads what another has left in them.
     /// </summary>
     internal sealed class ChannelDecoder : IDisposable
     {
-        /// <summary>Of a decode, that move about as many bytes: geometry; mesh and appearance.</summary>
+        /// <summary>Parts of a decode, which move about as many bytes each: geometry; mesh and appearance.</summary>
         public const int Parts = 2;
 
-        private const int AppearanceRow = 3; // of the channels, of four half floats each
+        private const int AppearanceRow = 3; // first row of appearance in the channels; a row has four half floats
 
         private readonly AvatarBuffers avatar;
         private readonly MlpMatmul mlpMatmul;
@@ -43,7 +43,7 @@ namespace Mua
             }
         }
 
-        /// <summary>Appends one of Parts, from the components in `channels` to what it makes of them.</summary>
+        /// <summary>Appends one of Parts: from the components in `channels` to this part's channels.</summary>
         public void Part(CommandBuffer commands, ChannelSet channels, int part)
         {
             if (part == 0)
@@ -76,7 +76,7 @@ namespace Mua
             }
         }
 
-        /// <summary>What the MLP makes of the components; good until the next MLP.</summary>
+        /// <summary>Output of the MLP for the components; the next MLP overwrites it.</summary>
         private GraphicsBuffer Mlp(CommandBuffer commands, LayerBuffers[] mlp, GraphicsBuffer components)
         {
             GraphicsBuffer x = components;
@@ -139,7 +139,7 @@ namespace Mua
             return branch.Channels * PlaneWords(low << branch.Details.Length >> before);
         }
 
-        /// <summary>Of a plane of half floats, whose rows are whole words.</summary>
+        /// <summary>Words of a plane of half floats; each row fills whole words.</summary>
         private static long PlaneWords(int size)
         {
             return (long)size * Kernel.Groups(size, 2);

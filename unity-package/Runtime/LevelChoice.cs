@@ -5,7 +5,7 @@ namespace Mua
     /// <summary>An avatar before the eyes, as LevelChoice takes it.</summary>
     internal struct AvatarSeen
     {
-        /// <summary>Metres.</summary>
+        /// <summary>Distance to the nearest eye, metres.</summary>
         public double Distance;
 
         /// <summary>Pixels along a side of a texel of its finest level.</summary>
@@ -24,7 +24,7 @@ namespace Mua
     /// </summary>
     internal static class LevelChoice
     {
-        private const double LargestTexel = 0.65; // pixels, up to which a texel is hardly told from a smaller one
+        private const double LargestTexel = 0.65; // pixels; texels up to this size look like smaller ones
         private const double Hysteresis = 1.15; // times: texels must look so much larger before a finer level comes back
 
         /// <summary>The coarsest level with texels up to LargestTexel; one that is shown stays a little longer.</summary>

@@ -14,7 +14,7 @@ namespace Mua
     {
         private const int ArgumentWords = 5;
         private const int SplatWords = 8;
-        private const long MostSplats = (1 << 24) - 1; // that the elements of the sort can tell apart, and from none
+        private const long MostSplats = (1 << 24) - 1; // distinct indices of the sort's elements, less the one that means none
 
         private readonly SplatProject splatProject;
         private readonly SplatSort splatSort;
@@ -67,10 +67,10 @@ namespace Mua
         /// <summary>[N, 8] words, as pack_splats of python/mua/kernels/splat_project.py lays them out.</summary>
         public GraphicsBuffer Splats { get; private set; }
 
-        /// <summary>[N] of 16 bits.</summary>
+        /// <summary>[N] depth keys of 16 bits.</summary>
         public GraphicsBuffer Keys { get; private set; }
 
-        /// <summary>[5] of the draw, and how many splats are visible.</summary>
+        /// <summary>[5] arguments of the draw, and how many splats are visible.</summary>
         public GraphicsBuffer Arguments { get; private set; }
 
         /// <summary>Arguments once more, for the draw itself.</summary>

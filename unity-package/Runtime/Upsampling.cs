@@ -9,7 +9,7 @@ namespace Mua
     internal sealed class Upsampling
     {
         /// <param name="recLo">Taps of one level.</param>
-        /// <param name="levels">Without details.</param>
+        /// <param name="levels">Number of levels without details.</param>
         /// <param name="coarser">At most as many: times that two texels become one.</param>
         public Upsampling(double[] recLo, int levels, int coarser)
         {
@@ -53,10 +53,10 @@ namespace Mua
         /// <summary>Samples along a side that a texel needs.</summary>
         public int Reach { get; }
 
-        /// <summary>Of the filter, texels.</summary>
+        /// <summary>Delay of the filter, texels.</summary>
         public int Delay { get; }
 
-        /// <summary>Spread by two, then convolved with the filter of the next level.</summary>
+        /// <summary>The taps upsampled by two, then convolved with the filter of the next level.</summary>
         private static double[] Refined(double[] taps, double[] filter)
         {
             var refined = new double[2 * (taps.Length - 1) + filter.Length];

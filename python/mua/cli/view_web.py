@@ -15,8 +15,6 @@ from mua.share.poster import front, opening
 from mua.share.server import address, serving
 from mua.share.site import Shown, player_site, title_of
 
-MESH = {"template": "mesh"}  # what the element calls differently
-
 
 def check_web(given: Mapping[str, object]) -> None:
     """Raises InputError for an option that would change nothing in a browser; None and False are not given."""
@@ -73,6 +71,6 @@ def serve(
 
 
 def _shown(text: str) -> str:
-    """As the element's attribute."""
+    """The element's attribute `show`."""
     parse_toggles(text)
-    return ",".join(MESH.get(word.strip(), word.strip()) for word in text.split(","))
+    return ",".join(word.strip() for word in text.split(","))

@@ -6,7 +6,7 @@ export class Asked {
   /** @type {number | null} */
   time = null; // seconds
 
-  /** Go to the time that was asked for, once. */
+  /** Seek to the requested time, once. */
   seek(/** @type {import("./player.js").Player} */ player) {
     if (this.time !== null) player.time = this.time;
     this.time = null;

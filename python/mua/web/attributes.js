@@ -5,8 +5,22 @@ import { SHOWN } from "./keys.js";
 
 /** @typedef {import("./player.js").Player} Player */
 
-/** Those that are followed whenever they change. */
-export const FOLLOWED = ["src", "clip", "controls", "poster", "alt", "speed", "show", "level", "budget", "stereo", "follow", "azimuth", "elevation"];
+/** Attributes that take effect whenever they change. */
+export const FOLLOWED = [
+  "src",
+  "clip",
+  "controls",
+  "poster",
+  "alt",
+  "speed",
+  "show",
+  "level",
+  "budget",
+  "stereo",
+  "follow",
+  "azimuth",
+  "elevation",
+];
 
 /** @type {Record<string, (player: Player, value: string | null) => void>} by the attribute's name */
 const ASKED = {
@@ -16,15 +30,20 @@ const ASKED = {
   speed: (player, value) => (player.speed = asked("speed", value, "a number", numberIn(value)) ?? 1),
   level(player, value) {
     const level = levelNamed(value);
-    player.level = asked("level", value, "auto, full or texels along a side", level === "auto" && value !== level ? null : level) ?? "auto";
+    player.level =
+      asked("level", value, "auto, full or texels along a side", level === "auto" && value !== level ? null : level) ??
+      "auto";
   },
   budget: (player, value) => (player.budget = asked("budget", value, "a number of splats", numberIn(value))),
   stereo: (player, value) => (player.stereo = value !== null),
   follow: (player, value) => (player.follow = value !== null),
   show(player, value) {
     if (value === null) return;
-    const shown = value.split(",").map((word) => word.trim()).filter(Boolean);
-    const known = /** @type {(keyof typeof SHOWN)[]} */ (Object.keys(SHOWN));
+    const shown = value
+      .split(",")
+      .map((word) => word.trim())
+      .filter(Boolean);
+    const known = /** @type {import("./keys.js").Shown[]} */ (Object.keys(SHOWN));
     const other = shown.find((word) => !known.some((each) => each === word));
     if (other) throw new AvatarError(`show="${value}": "${other}" cannot be shown, only ${known.join(", ")}.`);
     for (const each of known) player.show[each] = shown.includes(each);
@@ -37,16 +56,18 @@ function asked(name, value, expected, found) {
   return found;
 }
 
-/** Why the clip that is asked for does not play, where all that was to be loaded is there; nothing where it does. */
+/** An error if everything is loaded and the requested clip does not exist; null otherwise. */
 export function missingClip(/** @type {import("./element.js").MuaAvatar} */ element) {
   const { loaded, avatars } = element;
   const name = element.getAttribute("clip");
   const clips = avatars[0]?.clips.map((clip) => clip.name) ?? [];
   if (!loaded || !name || clips.includes(name)) return null;
-  return new AvatarError(`clip="${name}": ${avatars[0].name} has no such clip, only ${clips.join(", ") || "its bind pose"}.`);
+  return new AvatarError(
+    `clip="${name}": ${avatars[0].name} has no such clip, only ${clips.join(", ") || "its bind pose"}.`,
+  );
 }
 
-/** Those that a player can be asked for. */
+/** Attributes that set something on the player. */
 export const ASKABLE = Object.keys(ASKED);
 
 /** Let a player do what an element's attribute asks for. */
@@ -55,7 +76,11 @@ export function adopt(/** @type {Player} */ player, /** @type {HTMLElement} */ e
 }
 
 /** The number that an attribute holds. */
-export function numberOf(/** @type {HTMLElement} */ element, /** @type {string} */ name, /** @type {number} */ otherwise) {
+export function numberOf(
+  /** @type {HTMLElement} */ element,
+  /** @type {string} */ name,
+  /** @type {number} */ otherwise,
+) {
   return numberIn(element.getAttribute(name)) ?? otherwise;
 }
 
@@ -71,5 +96,8 @@ export function levelNamed(/** @type {string | null} */ name) {
 
 /** What is shown, as the attribute says it. */
 export function namesOf(/** @type {import("./player.js").Show} */ show) {
-  return Object.entries(show).filter(([, shown]) => shown).map(([name]) => name).join();
+  return Object.entries(show)
+    .filter(([, shown]) => shown)
+    .map(([name]) => name)
+    .join();
 }

@@ -26,7 +26,7 @@ import { texelTiles, texelWords, upsamplingTaps } from "./prepare.js";
 
 const ELEMENT_TYPES = ["F32", "F16", "I8"];
 
-/** The same filter with as many taps that a thread of InverseDwt finishes whole words: twice an odd number. */
+/** The filter padded to twice an odd number of taps, so that a thread of InverseDwt writes whole words. */
 export const wholeWords = (/** @type {ArrayLike<number>} */ taps) =>
   Float32Array.from(taps.length % 4 ? Array.from(taps) : [0, ...Array.from(taps), 0]);
 
@@ -51,7 +51,7 @@ export class AvatarBuffers {
     /** @type {LevelBuffers[]} */
     this.levels = [this.levelOf(texels, statics, 0)];
     /** @type {import("./coarser.js").Texture | null} */
-    this.coarser = null; // that the last of the levels was made of
+    this.coarser = null; // what the coarsest level so far was made of
   }
 
   /** A level of detail, at most the coarsest of the avatar; made when it is first asked for. @returns {LevelBuffers} */

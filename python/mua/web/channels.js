@@ -2,7 +2,7 @@
 // displayed frames can share. Reference: python/mua/player/channels.py.
 
 import { wholeWords } from "./buffers.js";
-import { kernelWithRoom, kernelsOf } from "./kernel.js";
+import { kernelsOf, kernelWithRoom } from "./kernel.js";
 import { upsamplingTaps } from "./prepare.js";
 import { BlendDetail, BlendLl } from "./wgsl/blend_subbands.js";
 import { InverseDwt, UpsampleTexels } from "./wgsl/inverse_dwt.js";
@@ -38,7 +38,7 @@ export const KERNELS = { BlendDetail, MlpMatmul, MlpMatmulTransposed, BlendLl };
 /** Groups of `size` that hold `count`. */
 export const groups = (/** @type {number} */ count, /** @type {number} */ size) => Math.ceil(count / size);
 
-/** Of a plane of half floats, whose rows are whole words. */
+/** Words of a plane of half floats; each row fills whole words. */
 const planeBytes = (/** @type {number} */ size) => FLOAT * size * groups(size, 2);
 
 /** InverseDwt, whose groups share the rows of ll that filters of so many taps need, low- and high-pass. @param {Device} device @param {number} taps */
@@ -55,11 +55,13 @@ export function upsampler(device, { factor, reach }) {
 
 /** The kernels that depend on the avatar, for its finest level. @param {Device} device @param {Avatar} avatar */
 export function kernelsFor(device, { wavelet, geometry, appearance }) {
-  const upsamplings = [geometry, appearance].map(({ details }) => upsamplingTaps(wavelet.recLo, wavelet.levels - details.length));
+  const upsamplings = [geometry, appearance].map(({ details }) =>
+    upsamplingTaps(wavelet.recLo, wavelet.levels - details.length),
+  );
   return [synthesis(device, wholeWords(wavelet.recLo).length), ...upsamplings.map((one) => upsampler(device, one))];
 }
 
-/** The buffers between the kernels of a decode, sized once and reused by every part: none hands on to another. */
+/** The buffers between the kernels of a decode, sized once and reused by every part; no part reads what another has left in them. */
 export class ChannelDecoder {
   constructor(/** @type {AvatarBuffers} */ buffers) {
     const { avatar, geometry, appearance, coarseMlp, memory } = buffers;
@@ -71,14 +73,16 @@ export class ChannelDecoder {
     const low = avatar.texels.size / 2 ** avatar.wavelet.levels;
     const texture = (/** @type {Branch} */ branch, /** @type {number} */ before) =>
       branch.channels * planeBytes(Math.floor((low * 2 ** branch.details.length) / 2 ** before));
-    const details = branches.flatMap(({ channels, details }) => details.map((band) => 3 * channels * planeBytes(band.size)));
+    const details = branches.flatMap(({ channels, details }) =>
+      details.map((band) => 3 * channels * planeBytes(band.size)),
+    );
     this.activations = [0, 1].map((i) => memory.buffer(activations, `activations ${i}`));
     this.details = memory.buffer(Math.max(0, ...details), "details");
     // the finest texture with details, and its ll
     this.textures = [0, 1].map((i) => memory.buffer(Math.max(...branches.map((b) => texture(b, i))), `texture ${i}`));
   }
 
-  /** Append one of PARTS, from the components in `channels` to what it makes of them. */
+  /** Append one of PARTS: from the components in `channels` to this part's channels. */
   part(/** @type {GPUComputePassEncoder} */ pass, /** @type {ChannelSet} */ channels, /** @type {number} */ part) {
     const { geometry, appearance } = this.buffers;
     if (part > 0) this.coarse(pass, channels);
@@ -86,7 +90,7 @@ export class ChannelDecoder {
     else this.branch(pass, appearance, channels.level.appearance, channels, ROWS / 2);
   }
 
-  /** What the MLP makes of the components; good until the next MLP. */
+  /** Output of the MLP for the components; the next MLP overwrites it. */
   mlp(/** @type {GPUComputePassEncoder} */ pass, /** @type {Mlp} */ mlp, /** @type {GPUBuffer} */ components) {
     let x = components;
     mlp.forEach((layer, i) => {

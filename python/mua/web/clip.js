@@ -14,7 +14,7 @@ export function framesAt(/** @type {Clip} */ clip, /** @type {number} */ rate) {
   return Math.floor(((clip.frames - 1) / clip.rate) * rate + LAST_FRAME_SLACK) + 1;
 }
 
-/** The pose of one of the frames that a clip has at `rate` frames per second. @returns {Pose} */
+/** The pose of one frame of a clip at `rate` frames per second. @returns {Pose} */
 export function sample(
   /** @type {Skeleton} */ skeleton,
   /** @type {Clip} */ clip,

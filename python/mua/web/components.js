@@ -12,7 +12,8 @@ export function readComponents({ mean, scale, directions, ranges, margins }, des
   const normal = descriptor.map((value, i) => (value - mean[i]) / scale[i]);
   const count = margins.length;
   const found = new Float64Array(count);
-  for (let k = 0, at = 0; k < count; k++) for (let i = 0; i < normal.length; i++) found[k] += directions[at++] * normal[i];
+  for (let k = 0, at = 0; k < count; k++)
+    for (let i = 0; i < normal.length; i++) found[k] += directions[at++] * normal[i];
   const held = found.map((value, k) => hold(value, ranges[k], ranges[count + k], margins[k]));
   const whole = length(found);
   return { held, outside: whole > 0 ? length(found.map((value, k) => value - held[k])) / whole : 0 };
@@ -21,7 +22,12 @@ export function readComponents({ mean, scale, directions, ranges, margins }, des
 const length = (/** @type {Float64Array} */ values) => Math.sqrt(values.reduce((sum, value) => sum + value * value, 0));
 
 /** A component as it is within its range; beyond, it approaches the margin and never exceeds it. */
-function hold(/** @type {number} */ value, /** @type {number} */ low, /** @type {number} */ high, /** @type {number} */ margin) {
+function hold(
+  /** @type {number} */ value,
+  /** @type {number} */ low,
+  /** @type {number} */ high,
+  /** @type {number} */ margin,
+) {
   const nearest = Math.min(Math.max(value, low), high);
   const beyond = Math.abs(value - nearest);
   return beyond > 0 ? nearest + (Math.sign(value - nearest) * beyond * margin) / (beyond + margin) : value;

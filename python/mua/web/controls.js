@@ -1,12 +1,12 @@
 // The bar, the panel and the sentences of an element: what they ask of it, and what they show of it.
 
 import { levelNamed } from "./attributes.js";
-import { SHOWN } from "./keys.js";
 import { ICONS, MARKUP } from "./markup.js";
 
 const EVERY = 500; // milliseconds between two looks at the times
 
 /** @typedef {import("./element.js").MuaAvatar} MuaAvatar */
+/** @typedef {import("./keys.js").Shown} Shown */
 
 /** The parts of an element. */
 export class Controls {
@@ -52,7 +52,8 @@ export class Controls {
   /** Hand what is done to the element. */
   listen(/** @type {(name: string) => HTMLElement} */ find) {
     const { avatar } = this;
-    const on = (/** @type {HTMLElement} */ part, /** @type {string} */ kind, /** @type {() => void} */ act) => part.addEventListener(kind, act);
+    const on = (/** @type {HTMLElement} */ part, /** @type {string} */ kind, /** @type {() => void} */ act) =>
+      part.addEventListener(kind, act);
     on(this.play, "click", () => avatar.togglePlaying());
     on(this.scrub, "input", () => avatar.seek(Number(this.scrub.value)));
     on(this.clips, "change", () => (avatar.clip = this.clips.value));
@@ -73,7 +74,7 @@ export class Controls {
     on(this.again, "click", () => void avatar.reload());
     on(this.close, "click", () => this.hush());
     on(this.times, "toggle", () => this.showTimes(true));
-    for (const box of this.toggles) on(box, "change", () => avatar.toggle(/** @type {keyof typeof SHOWN} */ (box.name)));
+    for (const box of this.toggles) on(box, "change", () => avatar.toggle(/** @type {Shown} */ (box.name)));
     this.panel.addEventListener("keydown", (event) => {
       if (event.key !== "Escape") return;
       this.openPanel(false);
@@ -131,7 +132,8 @@ export class Controls {
     const player = avatar.player;
     const here = avatar.avatars.length > 0;
     this.bar.hidden = !avatar.controls || !player;
-    for (const part of /** @type {HTMLInputElement[]} */ ([this.play, this.scrub, this.clips, this.speed])) part.disabled = !here || !player?.clips.length;
+    for (const part of /** @type {HTMLInputElement[]} */ ([this.play, this.scrub, this.clips, this.speed]))
+      part.disabled = !here || !player?.clips.length;
     this.whole.hidden = !document.fullscreenEnabled;
     this.whole.setAttribute("aria-pressed", String(avatar.matches(":fullscreen")));
     this.vr.hidden = !avatar.offersVR;
@@ -144,8 +146,12 @@ export class Controls {
     this.play.innerHTML = player.playing ? ICONS.pause : ICONS.play;
     this.play.setAttribute("aria-label", player.playing ? "Pause" : "Play");
     this.speed.value = String(player.speed);
-    for (const box of this.toggles) box.checked = player.show[/** @type {keyof typeof SHOWN} */ (box.name)];
-    this.list(this.clips, player.clips.map(({ name }) => name), player.clip);
+    for (const box of this.toggles) box.checked = player.show[/** @type {Shown} */ (box.name)];
+    this.list(
+      this.clips,
+      player.clips.map(({ name }) => name),
+      player.clip,
+    );
     this.stereo.checked = player.stereo;
     this.follow.checked = player.follow;
     this.list(this.level, avatar.levels.map(String), String(player.level));
@@ -162,7 +168,11 @@ export class Controls {
   /** Avatars by name, with a button each that takes it away. */
   listAvatars() {
     const rows = this.avatar.avatars.map((handle) => {
-      const [item, name, remove] = [document.createElement("li"), document.createElement("span"), document.createElement("button")];
+      const [item, name, remove] = [
+        document.createElement("li"),
+        document.createElement("span"),
+        document.createElement("button"),
+      ];
       name.textContent = handle.name;
       name.title = handle.notes;
       remove.type = "button";
@@ -206,10 +216,13 @@ export class Controls {
     [this.pictures, this.looked] = [0, performance.now()];
     if (!this.times.open || this.panel.hidden) return;
     const first = this.avatar.firstPicture;
-    this.rate.textContent = `${rate.toFixed(1)} pictures per second` + (first ? `; the first after ${(first / 1000).toFixed(1)} s` : "");
+    const since = first ? `; the first after ${(first / 1000).toFixed(1)} s` : "";
+    this.rate.textContent = `${rate.toFixed(1)} pictures per second${since}`;
     const times = Object.entries(player.milliseconds);
     const sum = times.reduce((all, [, spent]) => all + spent, 0);
-    this.stages.replaceChildren(...[...times, ["all stages", sum]].map(([name, spent]) => line(String(name), `${Number(spent).toFixed(2)} ms`)));
+    this.stages.replaceChildren(
+      ...[...times, ["all stages", sum]].map(([name, spent]) => line(String(name), `${Number(spent).toFixed(2)} ms`)),
+    );
     this.stages.hidden = !times.length;
     this.adapter.textContent = (times.length ? "" : "This device keeps no time. ") + player.adapter;
   }

@@ -5,8 +5,8 @@ import { offersVR } from "./webxr.js";
 
 const ALIGNMENT = 256; // bytes; no device asks for more between the constants of two dispatches
 const CAPACITY = 1 << 18; // bytes: a thousand dispatches may wait for one submit
-const RAISED_LIMITS = ["maxBufferSize", "maxStorageBufferBindingSize", "maxTextureDimension2D"]; // as much as the device has
-const LEAST_BUFFERS = 8; // that one stage binds
+const RAISED_LIMITS = ["maxBufferSize", "maxStorageBufferBindingSize", "maxTextureDimension2D"]; // raised to what the device has
+const LEAST_BUFFERS = 8; // bound by one stage
 
 /** An open device. */
 export class Device {
@@ -41,10 +41,10 @@ export class Device {
     /** @type {string | null} */
     this.lost = null; // why, once it is
     /** @type {Set<(reason: string) => void>} */
-    this.losing = new Set(); // told of it
+    this.losing = new Set(); // called when it is lost
     gpu.lost.then(({ reason }) => {
       this.lost = reason;
-      for (const told of [...this.losing]) told(reason);
+      for (const listener of [...this.losing]) listener(reason);
     });
     this.timestamps = gpu.features.has("timestamp-query");
     this.uniforms = new Uniforms(gpu);
@@ -54,12 +54,12 @@ export class Device {
     this.binders = new Set(); // that remember buffers which they bound
   }
 
-  /** Be told when it is lost, until a signal. */
-  whenLost(/** @type {(reason: string) => void} */ told, /** @type {AbortSignal | undefined} */ until = undefined) {
+  /** Call a listener when the device is lost, until a signal. */
+  whenLost(/** @type {(reason: string) => void} */ listener, /** @type {AbortSignal | undefined} */ until = undefined) {
     const { lost } = this;
-    if (lost) return queueMicrotask(() => told(lost));
-    this.losing.add(told);
-    until?.addEventListener("abort", () => this.losing.delete(told));
+    if (lost) return queueMicrotask(() => listener(lost));
+    this.losing.add(listener);
+    until?.addEventListener("abort", () => this.losing.delete(listener));
   }
 
   /**
@@ -114,7 +114,7 @@ export class Memory {
     this.textures = [];
   }
 
-  /** As Device.buffer. */
+  /** A buffer of this group; see Device.buffer. */
   buffer(
     /** @type {ArrayBufferView | number} */ content,
     /** @type {string} */ label,

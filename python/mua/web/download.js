@@ -27,7 +27,7 @@ export class Download {
     this.beyond = []; // what a server sends without having said so
   }
 
-  /** The end of the newest stage that is there and was not told before; 0 where there is none. */
+  /** The end of the newest stage that has arrived and was not returned before; 0 if there is none. */
   reached() {
     return this.stages.reached(this.got);
   }
@@ -92,7 +92,9 @@ export class Download {
 
   /** Ask for what is not there yet; a server that knows no ranges sends all of it again. @param {Response} first @param {Progress} progress */
   async resume(first, progress) {
-    const answer = await fetch(this.url, { headers: { Range: `bytes=${this.got}-` }, cache: "no-store" }).catch(() => null);
+    const answer = await fetch(this.url, { headers: { Range: `bytes=${this.got}-` }, cache: "no-store" }).catch(
+      () => null,
+    );
     if (!answer) return false;
     const part = answer.status === 206;
     if (!answer.ok && answer.status !== 416)

@@ -27,14 +27,21 @@ export async function readOrder({ gpu }, { keys, sortedCount }) {
   const encoder = gpu.createCommandEncoder();
   encoder.copyBufferToBuffer(keys, 0, read, 0, size);
   gpu.queue.submit([encoder.finish()]);
-  const there = await read.mapAsync(GPUMapMode.READ).then(() => true, () => false);
+  const there = await read.mapAsync(GPUMapMode.READ).then(
+    () => true,
+    () => false,
+  );
   const order = there ? orderOf(new Uint16Array(read.getMappedRange())) : null;
   read.destroy();
   return order;
 }
 
 /** Give the device the order that its kernels would have made. */
-export function writeOrder(/** @type {Device} */ device, /** @type {SplatFrame} */ splats, /** @type {Uint32Array} */ order) {
+export function writeOrder(
+  /** @type {Device} */ device,
+  /** @type {SplatFrame} */ splats,
+  /** @type {Uint32Array} */ order,
+) {
   device.write(splats.order, order);
   device.write(splats.arguments, Uint32Array.of(VERTICES_PER_SPLAT * order.length, 1, 0, 0, order.length));
 }

@@ -7,7 +7,7 @@
 //   poster      picture until the avatar is drawn
 //   alt         what is seen, for those who do not see it; the names of the avatars if left out
 //   speed       playback speed; 1 plays at the recorded speed
-//   show        what is drawn, separated by commas: splats, geometry, mesh, skeleton, shadow
+//   show        what is drawn, separated by commas: splats, geometry, template, skeleton, shadow
 //   level       of detail: auto (by the distance, if left out), full, or texels along a side of the texture
 //   budget      most splats of all avatars together where level is auto
 //   stereo      draws a left and a right eye side by side
@@ -17,19 +17,19 @@
 //   orbit       degrees per second by which the camera goes round while it plays, unless less motion is wanted
 //
 // Each is a property too; both may be set before, while and after an avatar loads, as play(), pause() and seek() may be called.
-// `outsideTraining` tells how far the pose last drawn is from those of training, 0 to 1.
+// `outsideTraining` is how far the pose last drawn is from those of training, 0 to 1.
 // Events: `progress` with `detail.totalProgress` of 0 to 1, `load` when an avatar is shown, `error` with the error in `detail`,
 // `picture` when the first one is drawn.
 
 import { Asked } from "./asked.js";
-import { adopt, ASKABLE, FOLLOWED, levelNamed, missingClip, namesOf, numberOf } from "./attributes.js";
+import { ASKABLE, adopt, FOLLOWED, levelNamed, missingClip, namesOf, numberOf } from "./attributes.js";
 import { Controls } from "./controls.js";
 import { acceptFiles } from "./drop.js";
 import { listen } from "./hands.js";
-import { pressed, SHOWN } from "./keys.js";
+import { pressed } from "./keys.js";
 import { Loading } from "./loading.js";
 import { look } from "./look.js";
-import { lessMotion, Loop } from "./loop.js";
+import { Loop, lessMotion } from "./loop.js";
 import { AvatarError, offersVR } from "./player.js";
 import { Attributed } from "./properties.js";
 import { Stage } from "./stage.js";
@@ -39,7 +39,7 @@ import { Stage } from "./stage.js";
 /** @typedef {import("./loading.js").Source} Source */
 
 const SHARPEST = 2; // device pixels of a CSS pixel that are drawn: more cost much and show little
-const FIRST = { splats: true, geometry: false, mesh: false, skeleton: false, shadow: true }; // what is shown where nothing is asked for
+const FIRST = { splats: true, geometry: false, template: false, skeleton: false, shadow: true }; // what is shown where nothing is asked for
 
 export class MuaAvatar extends Attributed {
   static observedAttributes = FOLLOWED;
@@ -98,7 +98,11 @@ export class MuaAvatar extends Attributed {
     queueMicrotask(() => this.isConnected || this.#loading.dispose()); // an element that is moved stays as it is
   }
 
-  attributeChangedCallback(/** @type {string} */ name, /** @type {string | null} */ before, /** @type {string | null} */ value) {
+  attributeChangedCallback(
+    /** @type {string} */ name,
+    /** @type {string | null} */ before,
+    /** @type {string | null} */ value,
+  ) {
     if (before === value) return;
     if (name === "poster") this.#controls.setPoster(value);
     else if (name === "src") this.isConnected && void this.reload();
@@ -143,7 +147,7 @@ export class MuaAvatar extends Attributed {
     this.reflect("speed", speed);
   }
 
-  /** What is drawn, separated by commas: splats, geometry, mesh, skeleton, shadow. @type {string} */
+  /** What is drawn, separated by commas: splats, geometry, template, skeleton, shadow. @type {string} */
   get show() {
     return this.player ? namesOf(this.player.show) : (this.getAttribute("show") ?? namesOf(FIRST));
   }
@@ -192,7 +196,7 @@ export class MuaAvatar extends Attributed {
     await this.#loading.reload();
   }
 
-  /** Show more avatars beside those that are there; what fails is said on the page and told by the event `error`. */
+  /** Show more avatars beside those that are there; a failure is shown on the page and reported by the event `error`. */
   async add(/** @type {Source[]} */ ...sources) {
     await this.#loading.add(sources);
   }
@@ -243,7 +247,7 @@ export class MuaAvatar extends Attributed {
   }
 
   /** Show or hide a part of the picture. */
-  toggle(/** @type {keyof typeof SHOWN} */ name) {
+  toggle(/** @type {import("./keys.js").Shown} */ name) {
     const shown = this.show.split(",").filter(Boolean);
     this.show = (shown.includes(name) ? shown.filter((each) => each !== name) : [...shown, name]).join();
   }
@@ -391,7 +395,9 @@ export class MuaAvatar extends Attributed {
   #fit() {
     const { canvas } = this.#controls;
     const sharp = Math.min(devicePixelRatio, SHARPEST);
-    const [width, height] = [canvas.clientWidth, canvas.clientHeight].map((side) => Math.max(Math.round(side * sharp), 1));
+    const [width, height] = [canvas.clientWidth, canvas.clientHeight].map((side) =>
+      Math.max(Math.round(side * sharp), 1),
+    );
     if (canvas.width === width && canvas.height === height) return;
     [canvas.width, canvas.height] = [width, height];
     this.#redraw();

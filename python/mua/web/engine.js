@@ -1,6 +1,6 @@
 // A player: its avatars and what is looked at, the loop that draws them, and what it does when the device is lost.
 
-import { camerasOf, framing, FOV } from "./camera.js";
+import { camerasOf, FOV, framing } from "./camera.js";
 import { AvatarError } from "./error.js";
 import { described, handleOf } from "./handle.js";
 import { load } from "./load.js";
@@ -39,7 +39,7 @@ export class Engine {
     /** @type {import("./player.js").CameraState} */
     this.camera = { azimuth: 0, elevation: 0, distance: 3.5, target: [0, 1, 0], fov: FOV };
     /** @type {import("./player.js").Show} */
-    this.show = { splats: true, geometry: false, mesh: false, skeleton: false, shadow: true };
+    this.show = { splats: true, geometry: false, template: false, skeleton: false, shadow: true };
     /** @type {import("./player.js").Level} */
     this.level = "auto";
     /** @type {number | null} */
@@ -62,7 +62,10 @@ export class Engine {
   /** A renderer whose device, where it is lost, is replaced. */
   async opened() {
     const renderer = await Renderer.open(this.canvas, this.options);
-    const { device, closed: { signal } } = renderer;
+    const {
+      device,
+      closed: { signal },
+    } = renderer;
     const lost = (/** @type {string} */ reason) => {
       if (reason === "destroyed") return;
       if (this.renderer === renderer) this.recover(performance.now() - device.since);

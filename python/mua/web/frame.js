@@ -1,7 +1,7 @@
 // One frame of an avatar: from a window of poses to channels and posed vertices. A decode is made at once, or part by part in
 // several displayed frames beside the channels that are shown meanwhile. Reference: python/mua/player/frame.py.
 
-import { ChannelDecoder, FLOAT, PARTS, TEXEL_CHANNELS, groups } from "./channels.js";
+import { ChannelDecoder, FLOAT, groups, PARTS, TEXEL_CHANNELS } from "./channels.js";
 import { readComponents } from "./components.js";
 import { describe } from "./descriptor.js";
 import { kernelsOf } from "./kernel.js";
@@ -47,7 +47,7 @@ export class AvatarFrame {
     };
   }
 
-  /** Of the decode that is shown; the buffers hold the finest level. */
+  /** Level of the decode that is shown; the buffers have room for the finest. */
   get splatCount() {
     return this.shown.level.splatCount;
   }

@@ -1,4 +1,4 @@
-// What a page is told of an avatar that was loaded, and may do with it.
+// What a page knows of an avatar that was loaded, and may do with it.
 
 import { framesAt } from "./clip.js";
 import { sizesOf } from "./levels.js";

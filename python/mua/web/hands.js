@@ -49,14 +49,24 @@ export function listen(/** @type {HTMLElement} */ canvas, /** @type {Held} */ he
   );
 
   /** One finger, or the mouse. */
-  function one(/** @type {import("./player.js").CameraState} */ camera, /** @type {PointerEvent} */ event, /** @type {number} */ right, /** @type {number} */ below) {
+  function one(
+    /** @type {import("./player.js").CameraState} */ camera,
+    /** @type {PointerEvent} */ event,
+    /** @type {number} */ right,
+    /** @type {number} */ below,
+  ) {
     const aside = event.shiftKey || !(event.buttons & 1);
     if (aside) pan(camera, right, below, canvas.clientHeight);
     else turn(camera, right, below);
   }
 
   /** Two fingers: their distance zooms, their middle moves aside. A finger that moves carries half of the middle. */
-  function two(/** @type {import("./player.js").CameraState} */ camera, /** @type {number} */ id, /** @type {{x: number, y: number}} */ before, /** @type {{x: number, y: number}} */ now) {
+  function two(
+    /** @type {import("./player.js").CameraState} */ camera,
+    /** @type {number} */ id,
+    /** @type {{x: number, y: number}} */ before,
+    /** @type {{x: number, y: number}} */ now,
+  ) {
     const [, other] = /** @type {[number, {x: number, y: number}]} */ ([...down].find(([each]) => each !== id));
     const apart = (/** @type {{x: number, y: number}} */ at) => Math.max(Math.hypot(at.x - other.x, at.y - other.y), 1);
     nearer(camera, apart(now) / apart(before), held.framed());

@@ -103,7 +103,8 @@ export class Headset {
     });
     const entries = [{ binding: 0, resource: texture.createView() }];
     const group = gpu.createBindGroup({ label: "headset", layout: pipeline.getBindGroupLayout(0), entries });
-    return (this.picture = { texture, group, pipeline });
+    this.picture = { texture, group, pipeline };
+    return this.picture;
   }
 
   /** Lay the eyes of the picture on the session's images. */

@@ -100,7 +100,8 @@ export class Kernel {
    * @param {Values} constants
    */
   dispatch(pass, groups, buffers, constants) {
-    pass.setPipeline((this.pipeline ??= this.gpu.createComputePipeline(this.described)));
+    this.pipeline ??= this.gpu.createComputePipeline(this.described);
+    pass.setPipeline(this.pipeline);
     pass.setBindGroup(0, this.bindings.group(buffers), this.bindings.offsets(constants));
     pass.dispatchWorkgroups(groups[0], groups[1], groups[2]);
   }
@@ -117,7 +118,9 @@ export function kernelsOf(/** @type {Device} */ device, /** @type {T} */ shaders
 
 /** Whether all of these kernels were compiled on a device before. */
 export function areCompiled(/** @type {Device} */ device, /** @type {Record<string, Shader>} */ shaders) {
-  return Object.values(shaders).every((shader) => /** @type {Kernel | undefined} */ (device.known.get(shader))?.pipeline);
+  return Object.values(shaders).every(
+    (shader) => /** @type {Kernel | undefined} */ (device.known.get(shader))?.pipeline,
+  );
 }
 
 /** A kernel whose groups share so many elements of an array, compiled once for a device. @param {Device} device @param {Shader} shader @param {string} array @param {number} count @returns {Kernel} */
@@ -176,7 +179,8 @@ export class Pipeline {
 
   /** Set the pipeline, its buffers and its constants for the draws that follow in a pass. */
   bind(/** @type {GPURenderPassEncoder} */ pass, /** @type {Buffers} */ buffers, /** @type {Values} */ constants) {
-    pass.setPipeline((this.pipeline ??= this.gpu.createRenderPipeline(this.described)));
+    this.pipeline ??= this.gpu.createRenderPipeline(this.described);
+    pass.setPipeline(this.pipeline);
     for (const [index, stage] of this.stages.entries())
       pass.setBindGroup(index, stage.group(buffers), stage.offsets(constants));
   }

@@ -6,10 +6,12 @@
 export const SHOWN = /** @type {const} */ ({
   splats: "Splats",
   geometry: "Detailed geometry",
-  mesh: "Template mesh",
+  template: "Template mesh",
   skeleton: "Skeleton",
   shadow: "Shadow",
 });
+
+/** @typedef {keyof typeof SHOWN} Shown the name of one of them */
 
 const STEP = 20; // pixels of a drag that an arrow key stands for
 
@@ -21,7 +23,7 @@ export const KEYS = {
   ...Object.fromEntries(
     Object.entries(SHOWN).map(([name, label], i) => [
       String(i + 1),
-      [String(i + 1), label, (/** @type {MuaAvatar} */ avatar) => avatar.toggle(/** @type {keyof typeof SHOWN} */ (name))],
+      [String(i + 1), label, (/** @type {MuaAvatar} */ avatar) => avatar.toggle(/** @type {Shown} */ (name))],
     ]),
   ),
   a: ["a", "look at the next avatar", (avatar) => avatar.lookAtNext()],
@@ -47,7 +49,9 @@ export const LISTED = [
   ["right drag, two fingers", "move aside"],
   ["wheel, pinch", "zoom"],
   ["shift and arrows", "turn"],
-  ...Object.values(KEYS).map(([key, does]) => [key, does]).filter(([key]) => key),
+  ...Object.values(KEYS)
+    .map(([key, does]) => [key, does])
+    .filter(([key]) => key),
 ];
 
 /** Do what a key stands for, unless the control that has the focus wants it; says whether it did. */

@@ -9,13 +9,15 @@
  * @property {number} shown level at present
  */
 
-const LARGEST_TEXEL = 0.65; // pixels along a side, up to which a texel is hardly told from a smaller one
+const LARGEST_TEXEL = 0.65; // pixels along a side; texels up to this size look like smaller ones
 const HYSTERESIS = 1.15; // times: texels must look so much larger before a finer level comes back
 
 /** Metres of a box from the middle of the eyes, and pixels along a side of a texel of so many metres at its nearest point. @param {number} length @param {number[]} box @param {import("./camera.js").Camera[]} cameras */
 export function texelPixels(length, box, cameras) {
   const [{ projection, screen, near }] = cameras;
-  const middle = [0, 1, 2].map((axis) => cameras.reduce((sum, { position }) => sum + position[axis], 0) / cameras.length);
+  const middle = [0, 1, 2].map(
+    (axis) => cameras.reduce((sum, { position }) => sum + position[axis], 0) / cameras.length,
+  );
   const apart = middle.map((at, axis) => Math.max(box[axis] - at, at - box[3 + axis], 0));
   const distance = Math.hypot(...apart);
   return { distance, texel: (length * projection[5] * screen[1]) / 2 / Math.max(distance, near) };

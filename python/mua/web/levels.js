@@ -11,7 +11,7 @@ import { world } from "./skeleton.js";
 export const sizesOf = (/** @type {Avatar} */ avatar) =>
   Array.from({ length: avatar.texels.levels.length + 1 }, (_, level) => avatar.texels.size / 2 ** level);
 
-/** Of one avatar, from picture to picture. */
+/** The levels of one avatar, and the one that it was last shown at. */
 export class Levels {
   constructor(/** @type {Avatar} */ avatar) {
     this.avatar = avatar;
@@ -37,7 +37,10 @@ export class Levels {
 export function levelsOf(standing, { level, budget }, cameras) {
   const chosen =
     level === "auto"
-      ? chooseLevels(standing.map(({ levels, pose, place }) => levels.seen(pose, place, cameras)), budget)
+      ? chooseLevels(
+          standing.map(({ levels, pose, place }) => levels.seen(pose, place, cameras)),
+          budget,
+        )
       : standing.map(({ levels }) => (typeof level === "number" ? Math.max(levels.sizes.indexOf(level), 0) : 0));
   standing.forEach(({ levels }, i) => (levels.shown = chosen[i]));
   return chosen;

@@ -8,7 +8,7 @@ import { read, readStage } from "./format/read.js";
 /** @typedef {(fraction: number, sentence: string) => void} Progress */
 /** @typedef {(avatar: Avatar) => void} Preview takes what is there of an avatar before the rest is, and before its checksum */
 /** @typedef {string | ArrayBuffer | Blob} Source */
-/** @typedef {{message: string, code: string, field: string}} Told what an AvatarError says, which a message can carry */
+/** @typedef {{message: string, code: string, field: string}} Failure what an AvatarError says, as a message can carry it */
 
 const AGAIN = 250; // milliseconds after which a part that was not shown is thought of again: no byte may come meanwhile
 const FETCHED = 0.8; // of the progress, the rest is reading and upload
@@ -29,7 +29,7 @@ export async function load(
       worker.onmessage = ({ data }) => {
         if (data.progress) progress(data.progress.fraction, data.progress.sentence);
         else if (data.preview) preview(data.preview);
-        else if (data.told) reject(new AvatarError(data.told.message, data.told));
+        else if (data.failure) reject(new AvatarError(data.failure.message, data.failure));
         else resolve(data.avatar);
       };
       worker.onerror = (event) => {

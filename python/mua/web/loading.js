@@ -86,13 +86,17 @@ export class Loading {
     const address = typeof source === "string" ? new URL(source, document.baseURI).href : source;
     let begun = false; // with a part of it
     const onPart = async (/** @type {AvatarHandle} */ part) => {
-      if (run !== this.#run || (!part.splats && !controls.poster.hidden)) return; // a poster shows more than a mesh
+      if (run !== this.#run || (!part.splats && !controls.poster.hidden)) return; // a poster shows more than a template
       const first = !begun;
       begun = true;
       await this.asks.show(first);
     };
     try {
-      const handle = await player.load(address, { signal, onProgress, onPart: (part) => void onPart(part).catch(() => {}) });
+      const handle = await player.load(address, {
+        signal,
+        onProgress,
+        onPart: (part) => void onPart(part).catch(() => {}),
+      });
       if (run !== this.#run) return handle.remove();
       this.#left -= 1;
       await this.asks.show(!begun);
@@ -129,13 +133,20 @@ export class Loading {
     this.#stopping = new AbortController();
     [this.#opening, this.player, this.#sources, this.#left] = [null, null, [], 0];
     this.asks.emptied();
-    if (opening) this.#closed = opening.then((player) => player.dispose(), () => {}); // why it did not open has been said
+    if (opening)
+      this.#closed = opening.then(
+        (player) => player.dispose(),
+        () => {},
+      ); // why it did not open has been said
   }
 
   /** Say what went wrong. */
   fail(/** @type {unknown} */ error, { again = false } = {}) {
     const { avatar, controls } = this;
-    const known = error instanceof AvatarError ? error : new AvatarError(`The avatar cannot be shown: ${error instanceof Error ? error.message : error}.`);
+    const known =
+      error instanceof AvatarError
+        ? error
+        : new AvatarError(`The avatar cannot be shown: ${error instanceof Error ? error.message : error}.`);
     const empty = !avatar.avatars.length;
     if (again) this.player?.stop();
     if (empty && !this.player) this.#opening = null; // opened anew when asked for again

@@ -8,15 +8,19 @@ export const ICONS = {
   play: icon("M7 4.5v15l13-7.5z"),
   pause: icon("M6 4.5h4v15H6zm8 0h4v15h-4z"),
   settings: icon("M3 6h10v2H3zm14 0h4v2h-4zM14 4h2v6h-2zM3 16h4v2H3zm8 0h10v2H11zM8 14h2v6H8z"),
-  picture: icon("M9 4 7.5 6H4v13h16V6h-3.5L15 4zm3 4.5a4 4 0 1 1 0 8 4 4 0 0 1 0-8zm0 1.8a2.2 2.2 0 1 0 0 4.4 2.2 2.2 0 0 0 0-4.4z"),
+  picture: icon(
+    "M9 4 7.5 6H4v13h16V6h-3.5L15 4zm3 4.5a4 4 0 1 1 0 8 4 4 0 0 1 0-8zm0 1.8a2.2 2.2 0 1 0 0 4.4 2.2 2.2 0 0 0 0-4.4z",
+  ),
   vr: icon("M3 7h18v10h-5.2l-2.3-3h-3l-2.3 3H3zm4 2.5a2 2 0 1 0 0 4 2 2 0 0 0 0-4zm10 0a2 2 0 1 0 0 4 2 2 0 0 0 0-4z"),
   whole: icon("M4 4h6v2H6v4H4zm10 0h6v6h-2V6h-4zM4 14h2v4h4v2H4zm14 0h2v6h-6v-2h4z"),
 };
 
 const SPEEDS = [0.1, 0.25, 0.5, 1, 1.5, 2];
 
-const option = (/** @type {number} */ speed) => `<option value="${speed}"${speed === 1 ? " selected" : ""}>${speed} ×</option>`;
-const toggle = (/** @type {string[]} */ [name, label]) => `<label><input type="checkbox" name="${name}">${label}</label>`;
+const option = (/** @type {number} */ speed) =>
+  `<option value="${speed}"${speed === 1 ? " selected" : ""}>${speed} ×</option>`;
+const toggle = (/** @type {string[]} */ [name, label]) =>
+  `<label><input type="checkbox" name="${name}">${label}</label>`;
 const row = (/** @type {string[]} */ [key, does]) => `<tr><td>${key}</td><td>${does}</td></tr>`;
 
 export const MARKUP = `

@@ -1,4 +1,4 @@
-// What is shown beside the splats: detailed geometry, coarse mesh, skeleton, cast shadow. Reference:
+// What is shown beside the splats: detailed geometry, template, skeleton, cast shadow. Reference:
 // python/mua/player/overlays.py.
 
 import { frameBox, margin } from "./bounds.js";
@@ -59,7 +59,7 @@ export class Overlays {
     this.frame = frame;
     this.avatar = avatar;
     this.pipelines = device.once("overlays", () => pipelines(device, color, depth));
-    this.bare = avatar.texels.texels.length === 0; // without splats: its mesh is shown in their place
+    this.bare = avatar.texels.texels.length === 0; // without splats: its template is shown in their place
     this.template = this.indices(avatar.template.faces, "template");
     this.joints = memory.buffer(16 * avatar.skeleton.names.length, "joints");
     this.strokes = strokes(memory, avatar.skeleton.parents);
@@ -130,7 +130,7 @@ export class Overlays {
     return { rings, indices: this.indices(triangles, "surface") };
   }
 
-  /** Draw the posed coarse mesh, each triangle flat. */
+  /** Draw the posed template with flat shading. */
   drawTemplate(/** @type {GPURenderPassEncoder} */ pass, /** @type {Camera} */ camera) {
     this.pipelines.template.bind(pass, this.posed(), lit(camera, TEMPLATE_COLOR));
     drawIndexed(pass, this.template);

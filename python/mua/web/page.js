@@ -1,9 +1,9 @@
 // The page around the element: its title, files that are opened or dropped anywhere, keys wherever the focus is.
 
-import { MuaAvatar } from "./element.js";
+import "./element.js";
 import { pressed } from "./keys.js";
 
-const avatar = /** @type {MuaAvatar} */ (document.querySelector("mua-avatar"));
+const avatar = /** @type {import("./element.js").MuaAvatar} */ (document.querySelector("mua-avatar"));
 const empty = /** @type {HTMLElement} */ (document.querySelector("#empty"));
 const heading = /** @type {HTMLElement} */ (document.querySelector("h1"));
 heading.textContent = document.title;

@@ -16,7 +16,7 @@ export { AvatarError, offersVR };
  * @typedef {object} Show what a picture shows, back to front; the names of mua-view --show
  * @property {boolean} splats
  * @property {boolean} geometry the texels' surface, lit
- * @property {boolean} mesh the coarse mesh, lit
+ * @property {boolean} template the posed coarse mesh, lit
  * @property {boolean} skeleton bones and joints, over all else
  * @property {boolean} shadow on the ground
  */
@@ -40,7 +40,7 @@ export { AvatarError, offersVR };
  * @property {string} notes what the file says of itself, e.g. that its teacher was a simulated stand-in
  * @property {ClipInfo[]} clips
  * @property {Box} bounds about its root joint over all its clips
- * @property {number} splats none while only its mesh is there
+ * @property {number} splats 0 while only its template is there
  * @property {number[]} levels of detail: texels along a side of the texture, the finest first
  * @property {boolean} whole false while only a part of its file is there, whose checksum nobody knows yet
  * @property {[number, number, number]} place where it stands, world, metres; may be set

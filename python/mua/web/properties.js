@@ -120,6 +120,7 @@ export class Attributed extends HTMLElementOrNone {
   upgrade() {
     for (const name of PROPERTIES) {
       if (!Object.hasOwn(this, name)) continue;
+      // biome-ignore lint/complexity/noUselessThisAlias: its type is another one
       const held = /** @type {Record<string, unknown>} */ (/** @type {unknown} */ (this));
       const value = held[name];
       delete held[name];

@@ -1,8 +1,8 @@
 // What the page's device holds of the avatars of one player, and the pictures that it draws of them. A lost device's renderer is
 // left behind and another one made.
 
-import { camerasOf } from "./camera.js";
 import { AvatarBuffers } from "./buffers.js";
+import { camerasOf } from "./camera.js";
 import { KERNELS as DECODING, kernelsFor } from "./channels.js";
 import { window } from "./clip.js";
 import { Memory } from "./device.js";
@@ -58,8 +58,10 @@ export class Renderer {
     this.shared = new Memory(device); // the splats of all avatars
     this.decoding = compiled(kernelsOf(device, { ...DECODING, BlendVertices }));
     // What comes later is compiled later: the first frame is decoded meanwhile.
-    this.projecting = this.decoding.then(() => compiled({ ...kernelsOf(device, PROJECTING), splats: this.scene.splats }));
-    this.projecting.catch(() => {}); // whoever adds an avatar or draws it is told
+    this.projecting = this.decoding.then(() =>
+      compiled({ ...kernelsOf(device, PROJECTING), splats: this.scene.splats }),
+    );
+    this.projecting.catch(() => {}); // whoever adds an avatar or draws it gets the error
     /** @type {Promise<unknown> | null} */
     this.sorting = null; // once the first picture is there
     this.ready = false; // to draw at once
@@ -102,6 +104,7 @@ export class Renderer {
       if (lacking || !slot) memory.free();
       if (lacking) {
         this.rearrange(this.slots.filter((one) => one !== slot));
+        // biome-ignore lint/correctness/noUnsafeFinally: too little memory is the cause of whatever failed before
         throw new AvatarError(`${avatar.name}: the graphics device has too little free memory for this avatar.`);
       }
     }
@@ -169,7 +172,7 @@ export class Renderer {
     this.submit(this.context.getCurrentTexture(), posed, look);
   }
 
-  /** The same picture as a PNG. @returns {Promise<Blob>} */
+  /** The picture as a PNG. @returns {Promise<Blob>} */
   async picture(/** @type {Posed[]} */ posed, /** @type {Look} */ look) {
     const memory = new Memory(this.device);
     const { width, height } = this.canvas;

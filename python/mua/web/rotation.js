@@ -9,7 +9,7 @@ export function normalized(/** @type {Float64Array | number[]} */ q, at = 0) {
   return q;
 }
 
-/** Hamilton product of those at `i` and `j`: the rotation b, then a. */
+/** Hamilton product of the quaternions at `i` and `j`: the rotation b, then a. */
 export function multiply(/** @type {Numbers} */ a, /** @type {Numbers} */ b, i = 0, j = 0) {
   const [aw, ax, ay, az] = [a[i], a[i + 1], a[i + 2], a[i + 3]];
   const [bw, bx, by, bz] = [b[j], b[j + 1], b[j + 2], b[j + 3]];
@@ -33,7 +33,7 @@ export function rotate(/** @type {Numbers} */ q, /** @type {Numbers} */ v, i = 0
   return [vx + w * tx + (y * tz - z * ty), vy + w * ty + (z * tx - x * tz), vz + w * tz + (x * ty - y * tx)];
 }
 
-/** Between those at `i` and `j` along the shorter arc, t of 0 to 1. */
+/** Interpolate between the quaternions at `i` and `j` along the shorter arc, t from 0 to 1. */
 export function slerp(/** @type {Numbers} */ a, /** @type {Numbers} */ b, /** @type {number} */ t, i = 0, j = 0) {
   const dot = a[i] * b[j] + a[i + 1] * b[j + 1] + a[i + 2] * b[j + 2] + a[i + 3] * b[j + 3];
   const angle = Math.acos(Math.min(Math.abs(dot), 1));

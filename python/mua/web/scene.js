@@ -1,4 +1,4 @@
-// What one picture shows: background, shadow, geometry or mesh, splats and skeleton, in this order. Reference:
+// What one picture shows: background, shadow, geometry or template, splats and skeleton, in this order. Reference:
 // python/mua/player/scene.py.
 
 import { Pipeline } from "./kernel.js";
@@ -45,7 +45,7 @@ export class Scene {
       setEye(pass, eye, camera);
       overlays.forEach((overlay, i) => {
         if (show.geometry && frame?.seen[i]) overlay.drawGeometry(pass, camera, frame.splats, frame.starts[i]);
-        if (show.mesh || (show.splats && overlay.bare)) overlay.drawTemplate(pass, camera);
+        if (show.template || (show.splats && overlay.bare)) overlay.drawTemplate(pass, camera);
       });
       for (const overlay of overlays) if (show.shadow) overlay.drawGround(pass, camera);
       if (show.splats && frame) this.drawSplats(pass, frame, camera, eye);

@@ -11,7 +11,7 @@ import { PARTS } from "./channels.js";
 
 const same = (/** @type {Moment | null} */ a, /** @type {Moment} */ b) => a?.clip === b.clip && a.frame === b.frame;
 
-/** What of an avatar is shown, and what is decoded meanwhile. */
+/** Which decode of an avatar is shown, and which one is being made. */
 export class DecodeSchedule {
   constructor(/** @type {AvatarFrame} */ frame) {
     this.frame = frame;

@@ -47,7 +47,7 @@ function offsets(/** @type {Constant} */ { offset, shape, strides }) {
   );
 }
 
-/** Writes named values where an entry point reads them. */
+/** Write named values where an entry point reads them. */
 export class Packer {
   constructor(/** @type {Shader} */ shader) {
     this.name = shader.entry;
@@ -55,7 +55,7 @@ export class Packer {
     this.places = new Map(shader.constants.map((constant) => [constant.name, { ...constant, at: offsets(constant) }]));
   }
 
-  /** Those of `values` that the entry point declares; throws where one that it reads is missing or of another length. */
+  /** The `values` that the entry point declares; throws if one that it reads is missing or has another length. */
   pack(/** @type {DataView} */ view, /** @type {number} */ start, /** @type {Values} */ values) {
     for (const [name, { scalar, at, used }] of this.places) {
       const value = values[name];

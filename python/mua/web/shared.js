@@ -39,7 +39,7 @@ function begin(/** @type {"high-performance" | "low-power"} */ powerPreference) 
   const forget = () => open.get(powerPreference) === shared && open.delete(powerPreference);
   opening.then((device) => {
     shared.device = device;
-    device.whenLost(forget); // before its users are told
+    device.whenLost(forget); // before its users hear of it
   }, forget);
   open.set(powerPreference, shared);
   return shared;

@@ -1,9 +1,9 @@
 // All avatars' splats together: the dispatches from posed texels to the splats that are seen, back to front, a plain list in
 // the order of the kernels. Reference: python/mua/player/splats.py.
 
-import { AvatarError } from "./error.js";
 import { sees } from "./camera.js";
 import { FLOAT, groups } from "./channels.js";
+import { AvatarError } from "./error.js";
 import { kernelsOf } from "./kernel.js";
 import { SplatProject } from "./wgsl/splat_project.js";
 import { CountDigits, ScanDigits, ScatterDigits } from "./wgsl/splat_sort.js";
@@ -11,7 +11,7 @@ import { CountDigits, ScanDigits, ScatterDigits } from "./wgsl/splat_sort.js";
 /** @typedef {import("./frame.js").AvatarFrame} AvatarFrame */
 /** @typedef {import("./camera.js").Camera} Camera */
 
-const MOST_SPLATS = (1 << 24) - 1; // that the elements of the sort can tell apart, and from none
+const MOST_SPLATS = (1 << 24) - 1; // distinct indices of the sort's elements, less the one that means none
 const SPLAT_WORDS = 8;
 const PROJECTED = 256; // texels of a group of SplatProject
 const SORTED = 2048; // keys of a group of the sort
@@ -75,7 +75,7 @@ export class SplatFrame {
     this.sortDigit(pass, this.halfSorted, this.order, 1);
   }
 
-  /** Append those from posed texels to splats and `keys`. */
+  /** Append the dispatches from posed texels to splats and `keys`. */
   projectAll(/** @type {GPUComputePassEncoder} */ pass, /** @type {Camera[]} */ cameras) {
     this.seen = this.avatars.map(
       ({ places, bounds }) => places.length > 0 && cameras.some((camera) => sees(camera, reach(bounds))),

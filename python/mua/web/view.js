@@ -8,7 +8,8 @@ export const TURN = (0.4 / 180) * Math.PI; // radians, for one pixel of a drag
 
 /** @typedef {import("./player.js").CameraState} CameraState */
 
-const clamp = (/** @type {number} */ x, /** @type {number} */ low, /** @type {number} */ high) => Math.min(Math.max(x, low), high);
+const clamp = (/** @type {number} */ x, /** @type {number} */ low, /** @type {number} */ high) =>
+  Math.min(Math.max(x, low), high);
 
 /** After a drag of so many pixels: the figure follows the hand. */
 export function turn(/** @type {CameraState} */ camera, /** @type {number} */ right, /** @type {number} */ down) {
@@ -27,7 +28,12 @@ export function nearer(/** @type {CameraState} */ camera, /** @type {number} */ 
 }
 
 /** After a drag of so many pixels in a picture of `height`: what is at the target stays under the hand. */
-export function pan(/** @type {CameraState} */ camera, /** @type {number} */ right, /** @type {number} */ down, /** @type {number} */ height) {
+export function pan(
+  /** @type {CameraState} */ camera,
+  /** @type {number} */ right,
+  /** @type {number} */ down,
+  /** @type {number} */ height,
+) {
   const metres = (2 * Math.tan(camera.fov / 2) * camera.distance) / height;
   const [sin, cos] = [Math.sin(camera.azimuth), Math.cos(camera.azimuth)];
   const [rise, level] = [Math.sin(camera.elevation), Math.cos(camera.elevation)];

@@ -68,7 +68,11 @@ export class VR {
     const began = engine.followed();
     return () => {
       const followed = engine.followed();
-      return roomOf(foot.map((at, axis) => at + followed[axis] - began[axis]), azimuth, apart);
+      return roomOf(
+        foot.map((at, axis) => at + followed[axis] - began[axis]),
+        azimuth,
+        apart,
+      );
     };
   }
 }

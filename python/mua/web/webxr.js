@@ -27,12 +27,18 @@ const MODE = "immersive-vr";
 
 /** The browser's WebXR, where it works with WebGPU. @returns {System | undefined} */
 export function webXR() {
-  return "XRGPUBinding" in globalThis ? /** @type {{xr?: System}} */ (/** @type {unknown} */ (navigator)).xr : undefined;
+  return "XRGPUBinding" in globalThis
+    ? /** @type {{xr?: System}} */ (/** @type {unknown} */ (navigator)).xr
+    : undefined;
 }
 
 /** Whether there is a headset, and a browser that draws on it by WebGPU. @returns {Promise<boolean>} */
 export async function offersVR() {
-  return (await webXR()?.isSessionSupported(MODE).catch(() => false)) ?? false;
+  return (
+    (await webXR()
+      ?.isSessionSupported(MODE)
+      .catch(() => false)) ?? false
+  );
 }
 
 /** A session; the browser grants it only while it handles a click or a key. @returns {Promise<Session>} */

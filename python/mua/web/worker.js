@@ -15,12 +15,12 @@ self.onmessage = async ({ data: source }) => {
   } catch (error) {
     if (!(error instanceof AvatarError)) throw error;
     const { message, code, field } = error;
-    self.postMessage({ told: { message, code, field } });
+    self.postMessage({ failure: { message, code, field } });
   }
 };
 
 /** The memory behind all arrays of an avatar. @returns {Generator<ArrayBuffer>} */
 function* memories(/** @type {unknown} */ value) {
-  if (ArrayBuffer.isView(value)) yield /** @type {ArrayBuffer} */ (value.buffer);
+  if (ArrayBuffer.isView(value)) yield/** @type {ArrayBuffer} */ (value.buffer);
   else if (value && typeof value === "object") for (const part of Object.values(value)) yield* memories(part);
 }

@@ -140,11 +140,11 @@ namespace Mua
         }
 
         /// <summary>A budget for one of two avatars, of which the other one shows no splats.</summary>
-        private static void SharesBudgetWithMesh()
+        private static void SharesBudgetWithTemplate()
         {
             AvatarRenderer first = Show(files[0]), second = Show(files[1]);
             Stand(Near);
-            second.Views = AvatarViews.Mesh;
+            second.Views = AvatarViews.Template;
             Make("budget").AddComponent<AvatarBudget>().Splats = Full(first);
             Say("splats", Splats(first));
         }

@@ -149,7 +149,7 @@ namespace Mua
         private static void ShowsViewsOfTwo()
         {
             AvatarRenderer first = Show(files[0]), second = Show(files[0]);
-            first.Views = second.Views = AvatarViews.Geometry | AvatarViews.Mesh | AvatarViews.Skeleton;
+            first.Views = second.Views = AvatarViews.Geometry | AvatarViews.Template | AvatarViews.Skeleton;
             for (int i = 0; i < Patience && (i < 2 || AvatarWorld.Current.Draws.Count < 6); i++)
             {
                 Frames(1);
@@ -182,7 +182,7 @@ namespace Mua
         {
             AvatarRenderer shown = Show(files[0]), copy = Make("copy").AddComponent<AvatarRenderer>();
             shown.Speed = 0.5f;
-            shown.Views = AvatarViews.Mesh;
+            shown.Views = AvatarViews.Template;
             shown.Level = AvatarLevel.Half;
             shown.SpreadDecode = false;
             shown.Rig = Make("rig").transform;

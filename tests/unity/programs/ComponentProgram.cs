@@ -53,9 +53,11 @@ namespace Mua
             Frames(72);
             Say("dispatches", Recorder.Dispatches - dispatches);
             Say("draws", Recorder.Draws - draws);
+            int lookups = Recorder.Lookups;
             long before = GC.GetAllocatedBytesForCurrentThread();
             Frames(72);
             Say("allocated", GC.GetAllocatedBytesForCurrentThread() - before);
+            Say("lookups", Recorder.Lookups - lookups);
             shown.IsPlaying = false;
             shown.Frame = 3;
             Say("frame", shown.Frame);
@@ -74,7 +76,7 @@ namespace Mua
             AvatarRenderer first = Show(files[0]), second = Show(files[1]);
             Frames(2);
             Say("both", AvatarWorld.Current.SplatCount);
-            second.Views = AvatarViews.Mesh;
+            second.Views = AvatarViews.Template;
             Frames(2);
             Say("one", AvatarWorld.Current.SplatCount);
             int alive = Recorder.AliveCount;

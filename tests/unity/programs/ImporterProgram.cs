@@ -177,7 +177,7 @@ namespace Mua.Editor
             SeenBy(view, game);
             AvatarRenderer other = AvatarObject.Create(asset, null, new Vector3(0.5f, 0, 0)).GetComponent<AvatarRenderer>();
             SeenBy(view, game);
-            opened.Views = AvatarViews.Splats | AvatarViews.Mesh;
+            opened.Views = AvatarViews.Splats | AvatarViews.Template;
             SeenBy(view, game);
             Stages.Opened.Clear();
             SeenBy(view, game);

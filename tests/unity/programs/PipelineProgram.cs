@@ -65,7 +65,7 @@ namespace Mua
             Frame("still", false);
             Measure();
             Scale();
-            Avatars[0].Views = AvatarViews.Splats | AvatarViews.Geometry | AvatarViews.Mesh | AvatarViews.Skeleton;
+            Avatars[0].Views = AvatarViews.Splats | AvatarViews.Geometry | AvatarViews.Template | AvatarViews.Skeleton;
             bool twice = Eyes.IsMultiPass;
             AwaitDraws(twice ? 8 : 4);
             Frame("all views", true);
@@ -199,11 +199,11 @@ namespace Mua
             Machine.IndirectArguments(true);
         }
 
-        /// <summary>One of two, when a camera was told to draw its buffers.</summary>
+        /// <summary>One of two, when a camera was asked to draw its buffers.</summary>
         private static void DestroyOne()
         {
             Show();
-            Avatars[1].Views = AvatarViews.Mesh;
+            Avatars[1].Views = AvatarViews.Template;
             Frame("one of two", true);
             Camera.onPreRender += EndSecond;
             Frame("one destroyed", true);

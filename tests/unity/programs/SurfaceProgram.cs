@@ -16,7 +16,7 @@ namespace Mua
 {
     internal static class SurfaceProgram
     {
-        private const AvatarViews All = AvatarViews.Geometry | AvatarViews.Mesh | AvatarViews.Skeleton | AvatarViews.Shadow;
+        private const AvatarViews All = AvatarViews.Geometry | AvatarViews.Template | AvatarViews.Skeleton | AvatarViews.Shadow;
         private const int WarmUp = 10, Frames = 200;
         private const int Patience = 10000; // milliseconds
 

@@ -2,10 +2,10 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { adopt, ASKABLE, levelNamed, numberOf } from "../../../python/mua/web/attributes.js";
-import { fakePlayer, FakeElement } from "./page.mjs";
+import { ASKABLE, adopt, levelNamed, numberOf } from "../../../python/mua/web/attributes.js";
+import { FakeElement, fakePlayer } from "./page.mjs";
 
-const ALL = { splats: false, geometry: false, mesh: false, skeleton: false, shadow: false };
+const ALL = { splats: false, geometry: false, template: false, skeleton: false, shadow: false };
 
 /** The player after an attribute with this value, or without it. */
 function asked(name, value, player = fakePlayer()) {
@@ -31,7 +31,7 @@ for (const [name, value, wanted] of [
   ["stereo", null, false],
   ["follow", "", true],
   ["follow", null, false],
-  ["show", "mesh, shadow", { ...ALL, mesh: true, shadow: true }],
+  ["show", "template, shadow", { ...ALL, template: true, shadow: true }],
   ["show", "", ALL],
 ])
   test(`${name}=${value === null ? "(none)" : `"${value}"`} asks for ${JSON.stringify(wanted)}`, () => {
@@ -51,8 +51,8 @@ for (const [name, value, said] of [
   });
 
 test("without show, what is shown stays", () => {
-  const player = { ...fakePlayer(), show: { splats: true, mesh: true } };
-  assert.deepEqual(asked("show", null, player).show, { splats: true, mesh: true });
+  const player = { ...fakePlayer(), show: { splats: true, template: true } };
+  assert.deepEqual(asked("show", null, player).show, { splats: true, template: true });
 });
 
 test("an attribute that asks nothing of a player changes nothing", () => {

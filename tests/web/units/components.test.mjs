@@ -19,9 +19,19 @@ function along(...parts) {
 const read = (encoding, ...numbers) => readComponents(encoding, Float64Array.from(numbers));
 
 test("a component is as it is within its range, and approaches the margin beyond either end", () => {
-  const expected = [[-1, -1], [2, 2], [0.5, 0.5], [2.5, 2.25], [3.5, 2.375], [-1.5, -1.25], [1e9, 2.5], [-1e9, -1.5]];
+  const expected = [
+    [-1, -1],
+    [2, 2],
+    [0.5, 0.5],
+    [2.5, 2.25],
+    [3.5, 2.375],
+    [-1.5, -1.25],
+    [1e9, 2.5],
+    [-1e9, -1.5],
+  ];
   assert.equal(expected.length, 8);
-  for (const [found, held] of expected) assert.ok(Math.abs(read(along([-1, 2, 0.5]), found).held[0] - held) < 1e-8, `${found}`);
+  for (const [found, held] of expected)
+    assert.ok(Math.abs(read(along([-1, 2, 0.5]), found).held[0] - held) < 1e-8, `${found}`);
 });
 
 test("a component without a margin ends with its range", () => {
@@ -37,7 +47,13 @@ test("each component has its own range and margin", () => {
 
 test("how far outside is the share that is taken off", () => {
   const encoding = along([-1, 1, 0], [-1, 1, 0]);
-  const found = [[0, 0], [0.6, 0.8], [3, 4], [4, 0], [0, -4]].map((pose) => read(encoding, ...pose).outside);
+  const found = [
+    [0, 0],
+    [0.6, 0.8],
+    [3, 4],
+    [4, 0],
+    [0, -4],
+  ].map((pose) => read(encoding, ...pose).outside);
   assert.deepEqual(found, [0, 0, Math.sqrt(13) / 5, 0.75, 0.75]);
 });
 
@@ -53,6 +69,11 @@ test("components are of the normalised descriptor", () => {
 });
 
 test("a file may hold more components than a function takes arguments", () => {
-  const encoding = { ...along([0, 0, 0]), directions: new Float32Array(300_000).fill(1), ranges: new Float32Array(600_000), margins: new Float32Array(300_000) };
+  const encoding = {
+    ...along([0, 0, 0]),
+    directions: new Float32Array(300_000).fill(1),
+    ranges: new Float32Array(600_000),
+    margins: new Float32Array(300_000),
+  };
   assert.equal(read(encoding, 2).outside, 1);
 });

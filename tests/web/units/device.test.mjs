@@ -24,14 +24,18 @@ test("what buffers hold is counted until they are freed, once", () => {
 test("a buffer that the device cannot bind is a sentence", () => {
   const device = deviceOf(fakeGpu({ most: 64 }));
   assert.equal(device.buffer(64, "small").size, 64);
-  assert.throws(() => device.buffer(65, "basis"), { name: "AvatarError", message: "basis: 80 bytes are more than the 64 that this device can bind." });
+  assert.throws(() => device.buffer(65, "basis"), {
+    name: "AvatarError",
+    message: "basis: 80 bytes are more than the 64 that this device can bind.",
+  });
 });
 
 test("all of an array reaches a buffer, also where it ends within a word", () => {
   const gpu = fakeGpu();
   deviceOf(gpu).buffer(Uint8Array.of(9, 1, 2, 3, 4, 5, 6).subarray(1), "bytes");
   const bytes = new Uint8Array(8);
-  for (const [, at, source, from = 0, size = source.byteLength] of gpu.written) bytes.set(new Uint8Array(source.buffer ?? source, from, size), at);
+  for (const [, at, source, from = 0, size = source.byteLength] of gpu.written)
+    bytes.set(new Uint8Array(source.buffer ?? source, from, size), at);
   assert.deepEqual([...bytes], [1, 2, 3, 4, 5, 6, 0, 0]);
 });
 
@@ -48,11 +52,17 @@ test("constants of a thousand dispatches reach the device, those that wait when 
   });
   const view = new DataView(held.buffer);
   const last = places.slice(-1000);
-  assert.deepEqual(last.map((at) => view.getUint32(at)), last.map((_, i) => 501 + i));
+  assert.deepEqual(
+    last.map((at) => view.getUint32(at)),
+    last.map((_, i) => 501 + i),
+  );
   assert.ok(places.every((at) => at % 256 === 0 && at + 16 <= held.length));
 });
 
 test("a device is called as the browser describes it, or by its maker", () => {
   assert.equal(deviceOf(fakeGpu()).name, "maker");
-  assert.equal(new Device({ info: { vendor: "maker", architecture: "x", description: "Card" } }, fakeGpu()).name, "Card");
+  assert.equal(
+    new Device({ info: { vendor: "maker", architecture: "x", description: "Card" } }, fakeGpu()).name,
+    "Card",
+  );
 });

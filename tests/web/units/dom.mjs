@@ -85,8 +85,8 @@ class Rooted extends Part {
 export const page = { frames: [], lessMotion: false, seen: [] };
 
 class Observer {
-  constructor(told) {
-    page.seen.push(told);
+  constructor(reported) {
+    page.seen.push(reported);
   }
 
   observe() {}

@@ -25,7 +25,11 @@ globalThis.fetch = async (_, { headers: given } = {}) => {
       this.sent = true;
     },
   });
-  return new Response(body, { status, statusText: status === 500 ? "Internal Server Error" : "", headers: { "content-length": left, ...headers.shift() } });
+  return new Response(body, {
+    status,
+    statusText: status === 500 ? "Internal Server Error" : "",
+    headers: { "content-length": left, ...headers.shift() },
+  });
 };
 
 beforeEach(() => ([asked, waits, headers] = [[], [], []]));
@@ -38,7 +42,10 @@ async function fetched(...given) {
 test("a connection that breaks often is asked for the rest as long as each time brings more", async () => {
   const often = Array.from({ length: 9 }, (_, i) => [i ? 206 : 200, 10 * i, 10 * i + 10]);
   assert.deepEqual(await fetched(...often, [206, 90, 100]), CONTENT);
-  assert.deepEqual(asked.slice(1), Array.from({ length: 9 }, (_, i) => `bytes=${10 * i + 10}-`));
+  assert.deepEqual(
+    asked.slice(1),
+    Array.from({ length: 9 }, (_, i) => `bytes=${10 * i + 10}-`),
+  );
   assert.deepEqual(new Set(waits), new Set([200]));
 });
 
@@ -54,7 +61,9 @@ test("a server that sends all of it again and breaks earlier each time is given 
 });
 
 test("a server that fails is a sentence with its answer, at first and while the rest is asked for", async () => {
-  await assert.rejects(fetched([500]), { message: "a.muaavatar cannot be fetched: the server answers 500 Internal Server Error." });
+  await assert.rejects(fetched([500]), {
+    message: "a.muaavatar cannot be fetched: the server answers 500 Internal Server Error.",
+  });
   assert.equal(asked.length, 1);
   await assert.rejects(fetched([200, 0, 40], [500]), /the connection broke after 0.0 MB; then the server answers 500/);
 });
@@ -73,7 +82,9 @@ for (const [mark, first, then] of [
 ])
   test(`a file of another ${mark} is not joined to the first part`, async () => {
     headers = [first, then];
-    await assert.rejects(fetched([200, 0, 40], [206, 40, 100]), { message: "a.muaavatar has changed on the server while it was fetched; load it again." });
+    await assert.rejects(fetched([200, 0, 40], [206, 40, 100]), {
+      message: "a.muaavatar has changed on the server while it was fetched; load it again.",
+    });
     headers = [first, first];
     assert.deepEqual(await fetched([200, 0, 40], [206, 40, 100]), CONTENT);
   });
@@ -92,10 +103,13 @@ test("of a file that is packed on the way nobody knows the length: it is not ask
 });
 
 test("how far it is is said, of all where that is known", async () => {
-  const told = [];
+  const reported = [];
   for (const given of [{}, { "content-encoding": "br" }]) {
     [answers, headers] = [[[200, 0, 100]], [given]];
-    await new Download("http://host/a%20b.muaavatar").whole((...said) => told.push(said));
+    await new Download("http://host/a%20b.muaavatar").whole((...said) => reported.push(said));
   }
-  assert.deepEqual(told, [[1, "Fetching a b.muaavatar: 0.0 of 0.0 MB"], [0, "Fetching a b.muaavatar: 0.0 MB"]]);
+  assert.deepEqual(reported, [
+    [1, "Fetching a b.muaavatar: 0.0 of 0.0 MB"],
+    [0, "Fetching a b.muaavatar: 0.0 MB"],
+  ]);
 });

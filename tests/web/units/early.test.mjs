@@ -23,18 +23,30 @@ function deviceWith(keys, { lost = false } = {}) {
       return made;
     },
     createCommandEncoder: () => ({
-      copyBufferToBuffer: (from, first, to, at, size) => (to.content = from.slice(first, first + size)),
+      copyBufferToBuffer: (from, first, to, _at, size) => (to.content = from.slice(first, first + size)),
       finish: () => 0,
     }),
   };
-  const splats = { keys: Uint16Array.from(keys).buffer, sortedCount: keys.length, order: "order", arguments: "arguments" };
-  return { device: { gpu, write: (buffer, content) => noted.written.push([buffer, Array.from(content)]) }, splats, noted };
+  const splats = {
+    keys: Uint16Array.from(keys).buffer,
+    sortedCount: keys.length,
+    order: "order",
+    arguments: "arguments",
+  };
+  return {
+    device: { gpu, write: (buffer, content) => noted.written.push([buffer, Array.from(content)]) },
+    splats,
+    noted,
+  };
 }
 
 test("splats are read and put in order, hidden ones left out, and the buffer is given back", async () => {
   const { device, splats, noted } = deviceWith([5, 0xffff, 2, 5]);
   assert.deepEqual(Array.from(await readOrder(device, splats)), [2, 0, 3]);
-  assert.deepEqual(noted.made.map(({ size, destroyed }) => [size, destroyed]), [[8, 1]]);
+  assert.deepEqual(
+    noted.made.map(({ size, destroyed }) => [size, destroyed]),
+    [[8, 1]],
+  );
 });
 
 test("a device that is lost meanwhile has no order", async () => {
@@ -46,14 +58,22 @@ test("a device that is lost meanwhile has no order", async () => {
 test("the device draws as many splats as are in order", () => {
   const { device, splats, noted } = deviceWith([5, 0xffff, 2, 5]);
   writeOrder(device, splats, Uint32Array.of(2, 0, 3));
-  assert.deepEqual(noted.written, [["order", [2, 0, 3]], ["arguments", [18, 1, 0, 0, 3]]]);
+  assert.deepEqual(noted.written, [
+    ["order", [2, 0, 3]],
+    ["arguments", [18, 1, 0, 0, 3]],
+  ]);
 });
 
 /** A renderer that draws an early picture while `change` happens to it; how many pictures that makes. */
 async function drawnEarly(change) {
   const { device, splats } = deviceWith([3, 1], { lost: change === "lost" });
   device.gpu.queue.onSubmittedWorkDone = async () => {};
-  const renderer = { device, splats: { ...splats, projectAll: () => {} }, canvas: { width: 40, height: 30 }, projecting: Promise.resolve() };
+  const renderer = {
+    device,
+    splats: { ...splats, projectAll: () => {} },
+    canvas: { width: 40, height: 30 },
+    projecting: Promise.resolve(),
+  };
   let pictures = 0;
   Object.assign(renderer, {
     compute: () => {},
@@ -65,8 +85,15 @@ async function drawnEarly(change) {
   });
   const { copyBufferToBuffer: copy } = device.gpu.createCommandEncoder();
   const create = device.gpu.createCommandEncoder;
-  device.gpu.createCommandEncoder = () => ({ ...create(), copyBufferToBuffer: (...given) => (copy(...given), change.call?.(0, renderer)) });
-  const look = { camera: { azimuth: 0, elevation: 0, distance: 3, target: [0, 0, 0], fov: 0.5 }, stereo: false, show: {} };
+  device.gpu.createCommandEncoder = () => ({
+    ...create(),
+    copyBufferToBuffer: (...given) => (copy(...given), change.call?.(0, renderer)),
+  });
+  const look = {
+    camera: { azimuth: 0, elevation: 0, distance: 3, target: [0, 0, 0], fov: 0.5 },
+    stereo: false,
+    show: {},
+  };
   await Renderer.prototype.drawEarly.call(renderer, [], look);
   return pictures;
 }

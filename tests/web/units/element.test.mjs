@@ -9,7 +9,10 @@ const { MuaAvatar } = await import("../../../python/mua/web/element.js");
 const { Engine } = await import("../../../python/mua/web/engine.js");
 const { KEYS, pressed } = await import("../../../python/mua/web/keys.js");
 
-const CLIPS = [{ name: "walk", frames: 4, seconds: 0.4 }, { name: "wave", frames: 2, seconds: 0.2 }];
+const CLIPS = [
+  { name: "walk", frames: 4, seconds: 0.4 },
+  { name: "wave", frames: 2, seconds: 0.2 },
+];
 let players; // that were opened
 let refused; // addresses that cannot be loaded
 
@@ -35,7 +38,15 @@ class FakePlayer {
 
   async load(source) {
     if (refused.some((end) => String(source).endsWith(end))) throw new Error("no such file");
-    const handle = { name: String(source).split("/").at(-1), notes: "", clips: CLIPS, splats: 5, bounds: box(1), levels: [64, 32, 16], outsideTraining: 0.25 };
+    const handle = {
+      name: String(source).split("/").at(-1),
+      notes: "",
+      clips: CLIPS,
+      splats: 5,
+      bounds: box(1),
+      levels: [64, 32, 16],
+      outsideTraining: 0.25,
+    };
     handle.remove = () => (this.avatars = this.avatars.filter((each) => each !== handle));
     this.avatars.push(handle);
     this.clips = CLIPS;
@@ -101,13 +112,20 @@ test("an element that is moved in the page keeps its player, one that is taken o
 
 test("another src takes the place of the first, also where it is set before the element is in the page", async () => {
   const { element, player } = await begun({ src: "a" }, (one) => one.setAttribute("src", "b"));
-  assert.deepEqual(player.avatars.map(({ name }) => name), ["b"]);
+  assert.deepEqual(
+    player.avatars.map(({ name }) => name),
+    ["b"],
+  );
   element.src = "c";
   for (let i = 0; i < 5; i++) await settled();
   assert.deepEqual([player.disposed, element.avatars.map(({ name }) => name)], [true, ["c"]]);
 });
 
-for (const [asked, less, playing] of [[{ autoplay: "" }, false, true], [{ autoplay: "" }, true, false], [{}, false, false]])
+for (const [asked, less, playing] of [
+  [{ autoplay: "" }, false, true],
+  [{ autoplay: "" }, true, false],
+  [{}, false, false],
+])
   test(`${"autoplay" in asked ? "autoplay" : "without it"}${less ? ", less motion wanted" : ""}: ${playing ? "plays" : "rests"}`, async () => {
     page.lessMotion = less;
     const { player } = await begun({ src: "a", ...asked });
@@ -136,25 +154,51 @@ test("what is asked before an avatar is there is done once it is", async () => {
 });
 
 test("attributes that are there when an avatar comes count", async () => {
-  const given = { clip: "wave", speed: "0.5", level: "32", budget: "900", stereo: "", follow: "", show: "mesh", azimuth: "90", elevation: "-45" };
+  const given = {
+    clip: "wave",
+    speed: "0.5",
+    level: "32",
+    budget: "900",
+    stereo: "",
+    follow: "",
+    show: "template",
+    azimuth: "90",
+    elevation: "-45",
+  };
   const { element, player } = await begun({ src: "a", ...given });
   const { clip, speed, level, budget, stereo, follow, show } = player;
-  assert.deepEqual({ clip, speed, level, budget, stereo, follow }, { clip: "wave", speed: 0.5, level: 32, budget: 900, stereo: true, follow: true });
-  assert.deepEqual(Object.keys(show).filter((name) => show[name]), ["mesh"]);
+  assert.deepEqual(
+    { clip, speed, level, budget, stereo, follow },
+    { clip: "wave", speed: 0.5, level: 32, budget: 900, stereo: true, follow: true },
+  );
+  assert.deepEqual(
+    Object.keys(show).filter((name) => show[name]),
+    ["template"],
+  );
   assert.deepEqual([player.camera.azimuth, player.camera.elevation], [Math.PI / 2, -Math.PI / 4]);
-  assert.deepEqual([element.clip, element.speed, element.level, element.show], ["wave", 0.5, 32, "mesh"]);
+  assert.deepEqual([element.clip, element.speed, element.level, element.show], ["wave", 0.5, 32, "template"]);
 });
 
 test("attributes that change later count at once and are drawn", async () => {
   const { element, player } = await begun();
-  const changes = [["clip", "wave"], ["speed", "2"], ["level", "full"], ["budget", "7"], ["stereo", ""], ["follow", ""]];
+  const changes = [
+    ["clip", "wave"],
+    ["speed", "2"],
+    ["level", "full"],
+    ["budget", "7"],
+    ["stereo", ""],
+    ["follow", ""],
+  ];
   for (const [name, value] of changes) {
     const before = player.drawn;
     element.setAttribute(name, value);
     await shown();
     assert.equal(player.drawn, before + 1, name);
   }
-  assert.deepEqual([player.clip, player.speed, player.level, player.budget, player.stereo, player.follow], ["wave", 2, "full", 7, true, true]);
+  assert.deepEqual(
+    [player.clip, player.speed, player.level, player.budget, player.stereo, player.follow],
+    ["wave", 2, "full", 7, true, true],
+  );
   element.setAttribute("azimuth", "180");
   element.setAttribute("elevation", "45");
   assert.deepEqual([player.camera.azimuth, player.camera.elevation], [Math.PI, Math.PI / 4]);
@@ -184,8 +228,20 @@ test("frames go round at both ends of a clip, and stepping pauses", async () => 
 test("clips and levels come in turn and begin again after the last", async () => {
   const { element, player } = await begun();
   const turns = (act, read) => Array.from({ length: 5 }, () => (act(), read()));
-  assert.deepEqual(turns(() => element.nextClip(), () => player.clip), ["wave", "walk", "wave", "walk", "wave"]);
-  assert.deepEqual(turns(() => element.nextLevel(), () => player.level), ["full", 32, 16, "auto", "full"]);
+  assert.deepEqual(
+    turns(
+      () => element.nextClip(),
+      () => player.clip,
+    ),
+    ["wave", "walk", "wave", "walk", "wave"],
+  );
+  assert.deepEqual(
+    turns(
+      () => element.nextLevel(),
+      () => player.level,
+    ),
+    ["full", 32, 16, "auto", "full"],
+  );
 });
 
 test("the clip that plays begins anew where it is chosen again", async () => {
@@ -197,22 +253,28 @@ test("the clip that plays begins anew where it is chosen again", async () => {
 
 test("an avatar that is taken away leaves the others in the middle", async () => {
   const { element, player } = await begun({ src: "a b" });
-  assert.deepEqual(player.avatars.map(({ place }) => place[0]), [-0.575, 0.575]);
+  assert.deepEqual(
+    player.avatars.map(({ place }) => place[0]),
+    [-0.575, 0.575],
+  );
   element.dismiss(player.avatars[0]);
-  assert.deepEqual(player.avatars.map(({ name, place }) => [name, place]), [["b", [0, 0, 0]]]);
+  assert.deepEqual(
+    player.avatars.map(({ name, place }) => [name, place]),
+    [["b", [0, 0, 0]]],
+  );
 });
 
-test("the poster is there until the first picture, which is told once; each avatar is told", async () => {
-  const told = [];
+test("the poster is there until the first picture, which is reported once, as each avatar is", async () => {
+  const reported = [];
   const { element, part } = await begun({ src: "a", poster: "p.png" }, (one) => {
-    for (const kind of ["load", "picture", "error"]) one.addEventListener(kind, () => told.push(kind));
+    for (const kind of ["load", "picture", "error"]) one.addEventListener(kind, () => reported.push(kind));
     assert.deepEqual([one.parts.get(".poster").hidden, one.parts.get(".poster").src], [false, "p.png"]);
   });
   assert.equal(part(".poster").hidden, true);
   assert.ok(element.firstPicture > 0);
   refused.push("c");
   await element.add("b", "c");
-  assert.deepEqual(told, ["picture", "load", "load", "error"]);
+  assert.deepEqual(reported, ["picture", "load", "load", "error"]);
 });
 
 test("a part can be shown and hidden", async () => {
@@ -227,19 +289,30 @@ test("properties are attributes, and null, undefined and false take them away", 
   const element = new MuaAvatar();
   const numbers = ["budget", "azimuth", "elevation", "orbit", "speed"];
   const flags = ["autoplay", "controls", "stereo", "follow"];
-  for (const [names, value, text] of [[numbers, 2.5, "2.5"], [["poster", "alt", "clip"], "x", "x"], [flags, true, ""]])
+  for (const [names, value, text] of [
+    [numbers, 2.5, "2.5"],
+    [["poster", "alt", "clip"], "x", "x"],
+    [flags, true, ""],
+  ])
     for (const name of names) {
       element[name] = value;
       assert.deepEqual([element.getAttribute(name), element[name]], [text, value], name);
       element[name] = value === true ? false : null;
       assert.equal(element.hasAttribute(name), false, name);
     }
-  assert.deepEqual([element.budget, element.azimuth, element.speed, element.stereo, element.alt], [null, 0, 1, false, ""]);
+  assert.deepEqual(
+    [element.budget, element.azimuth, element.speed, element.stereo, element.alt],
+    [null, 0, 1, false, ""],
+  );
 });
 
 test("what was set before the browser knew the element counts", async () => {
   const { element, player } = await begun({}, (one) => {
-    for (const [name, value] of [["src", "a"], ["speed", 0.25], ["stereo", true]])
+    for (const [name, value] of [
+      ["src", "a"],
+      ["speed", 0.25],
+      ["stereo", true],
+    ])
       Object.defineProperty(one, name, { value, writable: true, configurable: true, enumerable: true });
   });
   assert.deepEqual([player.avatars.length, player.speed, player.stereo], [1, 0.25, true]);
@@ -249,7 +322,11 @@ test("what was set before the browser knew the element counts", async () => {
 
 /** A key that is pressed while a control has the focus; whether the element took it. */
 function press(element, key, { focus = {}, ...held } = {}) {
-  const event = Object.assign(new Event("keydown", { cancelable: true }), { key, ...held, composedPath: () => [focus] });
+  const event = Object.assign(new Event("keydown", { cancelable: true }), {
+    key,
+    ...held,
+    composedPath: () => [focus],
+  });
   return pressed(event, element) && event.defaultPrevented;
 }
 
@@ -261,7 +338,7 @@ test("keys do what the panel says", async () => {
     ["ArrowRight", () => Math.round(10 * player.time), 0],
     ["1", () => player.show.splats, false],
     ["2", () => player.show.geometry, true],
-    ["3", () => player.show.mesh, true],
+    ["3", () => player.show.template, true],
     ["4", () => player.show.skeleton, true],
     ["5", () => player.show.shadow, false],
     ["a", () => player.framed.at(-1)[0].name, "a"],
@@ -277,12 +354,17 @@ test("keys do what the panel says", async () => {
     assert.equal(press(element, key), true, key);
     assert.equal(read(), wanted, `after ${key}`);
   }
-  assert.deepEqual(Object.keys(KEYS).filter((key) => press(element, key, { ctrlKey: true })), []);
+  assert.deepEqual(
+    Object.keys(KEYS).filter((key) => press(element, key, { ctrlKey: true })),
+    [],
+  );
 });
 
 test("shift and arrows turn as a drag does", async () => {
   const { element, player } = await begun();
-  const turned = (key) => (press(element, key, { shiftKey: true }), [player.camera.azimuth, player.camera.elevation].map(Math.sign).join());
+  const turned = (key) => (
+    press(element, key, { shiftKey: true }), [player.camera.azimuth, player.camera.elevation].map(Math.sign).join()
+  );
   assert.equal(turned("ArrowLeft"), "1,0");
   assert.equal(turned("ArrowDown"), "1,1");
   assert.deepEqual([turned("ArrowRight"), turned("ArrowUp")], ["0,1", "0,0"]);
@@ -299,8 +381,16 @@ test("a control that has the focus keeps its keys", async () => {
     [Object.assign(control("p"), { isContentEditable: true }), ["c"], []],
     [control("p"), [], ["c", " "]],
   ]) {
-    assert.deepEqual(kept.filter((key) => press(element, key, { focus })), [], focus.tag);
-    assert.deepEqual(left.filter((key) => !press(element, key, { focus })), [], focus.tag);
+    assert.deepEqual(
+      kept.filter((key) => press(element, key, { focus })),
+      [],
+      focus.tag,
+    );
+    assert.deepEqual(
+      left.filter((key) => !press(element, key, { focus })),
+      [],
+      focus.tag,
+    );
   }
 });
 
@@ -318,10 +408,13 @@ test("the controls do what they say", async () => {
   change(".level", { value: "32" });
   change(".stereo");
   change(".follow");
-  assert.deepEqual([player.clip, player.speed, player.level, player.stereo, player.follow], ["wave", 0.5, 32, true, true]);
-  const mesh = element.toggles.find(({ name }) => name === "mesh");
-  mesh.dispatchEvent(new Event("change"));
-  assert.equal(player.show.mesh, true);
+  assert.deepEqual(
+    [player.clip, player.speed, player.level, player.stereo, player.follow],
+    ["wave", 0.5, 32, true, true],
+  );
+  const template = element.toggles.find(({ name }) => name === "template");
+  template.dispatchEvent(new Event("change"));
+  assert.equal(player.show.template, true);
   part(".reset").click();
   assert.equal(player.framed.length, 2);
 });
@@ -334,14 +427,26 @@ test("the controls show what is shown and how it plays", async () => {
     [".speed", ".clips", ".level", ".scrub", ".scrub"].map((name, i) => part(name)[i === 4 ? "max" : "value"]),
     ["0.5", "wave", "32", "0.1", "0.2"],
   );
-  assert.deepEqual([part(".stereo").checked, part(".follow").checked, part(".play").getAttribute("aria-label")], [true, true, "Pause"]);
-  assert.deepEqual(part(".clips").options.map(({ value }) => value), ["walk", "wave"]);
-  assert.deepEqual(element.toggles.filter(({ checked }) => checked).map(({ name }) => name), ["splats", "shadow"]);
-  assert.deepEqual([part(".clock").textContent, part(".outside").textContent], ["0.1 / 0.2 s", "Outside of training: 25 %"]);
+  assert.deepEqual(
+    [part(".stereo").checked, part(".follow").checked, part(".play").getAttribute("aria-label")],
+    [true, true, "Pause"],
+  );
+  assert.deepEqual(
+    part(".clips").options.map(({ value }) => value),
+    ["walk", "wave"],
+  );
+  assert.deepEqual(
+    element.toggles.filter(({ checked }) => checked).map(({ name }) => name),
+    ["splats", "shadow"],
+  );
+  assert.deepEqual(
+    [part(".clock").textContent, part(".outside").textContent],
+    ["0.1 / 0.2 s", "Outside of training: 25 %"],
+  );
   assert.equal(part(".bar").hidden, true);
 });
 
-test("who cannot see the picture is told what it shows", async () => {
+test("the picture is described to those who cannot see it", async () => {
   const { element, part } = await begun({ src: "a b" });
   const label = () => part("canvas").getAttribute("aria-label");
   assert.equal(label(), "a, b");

@@ -29,7 +29,7 @@ class FakeRenderer {
   device = {
     gpu: this.gpu,
     since: performance.now(),
-    whenLost: (told, until) => (this.lose = ({ reason }) => until.aborted || told(reason)),
+    whenLost: (reported, until) => (this.lose = ({ reason }) => until.aborted || reported(reason)),
   };
 
   get destroyed() {
@@ -77,10 +77,10 @@ beforeEach(() => {
 
 async function begun() {
   const engine = await Engine.create({ width: 8, height: 8 }, {});
-  const told = [];
-  engine.onerror = ({ message }) => told.push(message);
+  const reported = [];
+  engine.onerror = ({ message }) => reported.push(message);
   engine.show.shadow = false;
-  return { engine, told };
+  return { engine, reported };
 }
 
 test("an avatar has a slot of the device from when it is shown until it is taken away, once", async () => {
@@ -120,94 +120,97 @@ test("an avatar whose device is lost while it comes is a sentence and is not sho
 });
 
 test("a device that comes back draws all avatars by slots of its own", async () => {
-  const { engine, told } = await begun();
+  const { engine, reported } = await begun();
   for (let i = 0; i < 2; i++) await engine.put(avatar, null, true);
   await engine.recover(LONG);
   assert.equal(devices.length, 2);
-  assert.deepEqual(engine.entries.map(({ slot }) => slot), devices[1].slots);
+  assert.deepEqual(
+    engine.entries.map(({ slot }) => slot),
+    devices[1].slots,
+  );
   assert.deepEqual(devices[1].drawn, [devices[1].slots]);
-  assert.deepEqual([engine.renderer, told], [devices[1], []]);
+  assert.deepEqual([engine.renderer, reported], [devices[1], []]);
 });
 
 test("an avatar that is taken away while its device comes back holds nothing there", async () => {
-  const { engine, told } = await begun();
+  const { engine, reported } = await begun();
   const [first, second] = [await engine.put(avatar, null, true), await engine.put(avatar, null, true)];
   uploading = async () => first.handle.remove();
   await engine.recover(LONG);
-  assert.deepEqual([devices[1].slots, devices[1].drawn, told], [[second.slot], [[second.slot]], []]);
+  assert.deepEqual([devices[1].slots, devices[1].drawn, reported], [[second.slot], [[second.slot]], []]);
 });
 
 test("a player that is disposed of while its device comes back leaves no device behind", async () => {
-  const { engine, told } = await begun();
+  const { engine, reported } = await begun();
   await engine.put(avatar, null, true);
   uploading = async () => engine.dispose();
   await engine.recover(LONG);
-  assert.deepEqual([devices[1].destroyed, devices[1].drawn, engine.renderer, told], [true, [], null, []]);
+  assert.deepEqual([devices[1].destroyed, devices[1].drawn, engine.renderer, reported], [true, [], null, []]);
 });
 
 test("a device that goes because the player was disposed of does not come back", async () => {
-  const { engine, told } = await begun();
+  const { engine, reported } = await begun();
   const entry = await engine.put(avatar, null, true);
   engine.dispose();
   engine.dispose();
   devices[0].lose({ reason: "unknown" });
   await settled();
-  assert.deepEqual([devices.length, devices[0].destroyed, entry.slot.freed, told], [1, true, 1, []]);
+  assert.deepEqual([devices.length, devices[0].destroyed, entry.slot.freed, reported], [1, true, 1, []]);
   entry.handle.remove();
   assert.equal(entry.handle.outsideTraining, 0);
 });
 
-test("a device that does not come back is told and nothing is drawn", async () => {
-  const { engine, told } = await begun();
+test("a device that does not come back is reported and nothing is drawn", async () => {
+  const { engine, reported } = await begun();
   await engine.put(avatar, null, true);
   Renderer.open = async () => {
     throw new Error("no adapter");
   };
   await engine.recover(LONG);
-  assert.deepEqual(told, ["The graphics device was lost and did not come back: no adapter"]);
+  assert.deepEqual(reported, ["The graphics device was lost and did not come back: no adapter"]);
   await assert.rejects(engine.screenshot(), AWAY);
 });
 
-test("a device that comes back and cannot take up the avatars is given back, and told", async () => {
-  const { engine, told } = await begun();
+test("a device that comes back and cannot take up the avatars is given back, and reported", async () => {
+  const { engine, reported } = await begun();
   await engine.put(avatar, null, true);
   uploading = () => Promise.reject(new Error("too little memory"));
   await engine.recover(LONG);
   assert.deepEqual([devices[1].destroyed, engine.renderer], [true, null]);
-  assert.deepEqual(told, ["The graphics device was lost and did not come back: too little memory"]);
+  assert.deepEqual(reported, ["The graphics device was lost and did not come back: too little memory"]);
 });
 
-test("a device that is lost again while it takes up the avatars is told and draws nothing", async () => {
-  const { engine, told } = await begun();
+test("a device that is lost again while it takes up the avatars is reported and draws nothing", async () => {
+  const { engine, reported } = await begun();
   await engine.put(avatar, null, true);
   uploading = async () => (devices[1].lose({ reason: "unknown" }), settled());
   await engine.recover(LONG);
   assert.deepEqual([devices.length, devices[1].destroyed, devices[1].drawn, engine.renderer], [2, true, [], null]);
-  assert.match(told.join(), /lost twice/);
+  assert.match(reported.join(), /lost twice/);
 });
 
-test("a device that is lost for a while comes back, and is told where it is lost again at once", async () => {
-  const { engine, told } = await begun();
+test("a device that is lost for a while comes back, and is reported where it is lost again at once", async () => {
+  const { engine, reported } = await begun();
   await engine.recover(LONG);
   devices[1].lose({ reason: "unknown" });
   await settled();
   assert.equal(devices.length, 2);
-  assert.match(told.join(), /lost twice/);
+  assert.match(reported.join(), /lost twice/);
 });
 
-test("nothing is told of a player that was disposed of", async () => {
-  const { engine, told } = await begun();
+test("nothing is reported of a player that was disposed of", async () => {
+  const { engine, reported } = await begun();
   await engine.put(avatar, null, true);
   uploading = async () => (engine.dispose(), Promise.reject(new Error("gone")));
   await engine.recover(LONG);
   devices[0].refuse("destroyed");
-  assert.deepEqual([devices[1].destroyed, told], [true, []]);
+  assert.deepEqual([devices[1].destroyed, reported], [true, []]);
 });
 
 test("an avatar stands on the ground of the clip that it plays, where a shadow is asked for", async () => {
   const higher = { ...avatar.clips[0], name: "higher", translation: avatar.clips[0].translation.map((at) => at + 0.5) };
   const { engine } = await begun();
-  const entry = await engine.put({ ...avatar, clips: [avatar.clips[0], higher] }, null, true);
+  await engine.put({ ...avatar, clips: [avatar.clips[0], higher] }, null, true);
   assert.equal(engine.posed()[0].ground, 0);
   engine.show.shadow = true;
   const [{ ground }] = engine.posed();
@@ -225,10 +228,10 @@ test("before its first picture an avatar is not outside of training", async () =
   assert.equal(entry.handle.outsideTraining, 0);
 });
 
-test("what the device refuses is told, until the player is disposed of", async () => {
-  const { engine, told } = await begun();
+test("what the device refuses is reported, until the player is disposed of", async () => {
+  const { engine, reported } = await begun();
   devices[0].refuse("too large");
   engine.dispose();
   devices[0].refuse("gone");
-  assert.deepEqual(told, ["The graphics device refused: too large"]);
+  assert.deepEqual(reported, ["The graphics device refused: too large"]);
 });

@@ -3,8 +3,8 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
-import { read } from "../../../python/mua/web/format/read.js";
 import { window } from "../../../python/mua/web/clip.js";
+import { read } from "../../../python/mua/web/format/read.js";
 import { AvatarFrame } from "../../../python/mua/web/frame.js";
 import { Levels } from "../../../python/mua/web/levels.js";
 
@@ -15,7 +15,12 @@ const windowAt = (frame) => window(avatar.skeleton, avatar.clips[0], frame, avat
 function frameOf() {
   const frame = Object.create(AvatarFrame.prototype);
   const level = (at) => ({ level: at, splatCount: 10 - at });
-  Object.assign(frame, { buffers: { avatar, level }, device: { write() {} }, hidden: null, shown: { outside: 0, components: "shown" } });
+  Object.assign(frame, {
+    buffers: { avatar, level },
+    device: { write() {} },
+    hidden: null,
+    shown: { outside: 0, components: "shown" },
+  });
   frame.decoder = { part() {} };
   frame.createChannels = () => ({ outside: 0, components: "hidden" });
   return frame;
@@ -27,14 +32,18 @@ test("an avatar's joints and box go with its place", () => {
   frame.writePose(pose, [0, 0, 0]);
   const [joints, box] = [Array.from(frame.places), frame.bounds];
   frame.writePose(pose, [1, -2, 3]);
-  const near = (found, wanted) => found.forEach((value, i) => assert.ok(Math.abs(value - wanted[i] - [1, -2, 3][i % 3]) < 1e-6));
+  const near = (found, wanted) =>
+    found.forEach((value, i) => assert.ok(Math.abs(value - wanted[i] - [1, -2, 3][i % 3]) < 1e-6));
   near(Array.from(frame.places), joints);
   near(frame.bounds, box);
 });
 
-test("what is told of a pose is told once it is shown", () => {
+test("what is known of a pose is reported once it is shown", () => {
   const frame = frameOf();
-  const stretched = windowAt(0).map((pose) => ({ ...pose, rotations: pose.rotations.map((value, i) => [0.5, 0.5, -0.5, 0.5][i % 4] + 0 * value) }));
+  const stretched = windowAt(0).map((pose) => ({
+    ...pose,
+    rotations: pose.rotations.map((value, i) => [0.5, 0.5, -0.5, 0.5][i % 4] + 0 * value),
+  }));
   frame.begin(stretched, 1);
   assert.deepEqual([frame.outside, frame.shown.components], [0, "shown"]);
   for (let part = frame.partsLeft; part > 0; part--) frame.advance("pass");
@@ -49,7 +58,10 @@ test("what is told of a pose is told once it is shown", () => {
 test("an avatar is as near as it stands", () => {
   const levels = new Levels(avatar);
   const camera = { position: [0, 1, 10], projection: new Array(16).fill(1), screen: [100, 100], near: 0.02 };
-  const [here, behind] = [[0, 0, 0], [0, 0, -5]].map((place) => levels.seen(windowAt(0)[0], place, [camera]));
+  const [here, behind] = [
+    [0, 0, 0],
+    [0, 0, -5],
+  ].map((place) => levels.seen(windowAt(0)[0], place, [camera]));
   assert.ok(Math.abs(behind.distance - here.distance - 5) < 1e-5);
   assert.ok(behind.texel < here.texel);
 });

@@ -30,7 +30,9 @@ export function fakeGpu({ most = 1 << 28 } = {}) {
     popErrorScope: async () => gpu.lacking,
     destroy: () => (gpu.destroyed = true),
     ...Object.fromEntries(
-      ["ShaderModule", "BindGroupLayout", "BindGroup", "PipelineLayout", "ComputePipeline", "RenderPipeline"].map((kind) => [`create${kind}`, made]),
+      ["ShaderModule", "BindGroupLayout", "BindGroup", "PipelineLayout", "ComputePipeline", "RenderPipeline"].map(
+        (kind) => [`create${kind}`, made],
+      ),
     ),
     createRenderPipelineAsync: async (given) => made(given),
   });

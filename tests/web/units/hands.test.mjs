@@ -16,7 +16,9 @@ function held() {
   const camera = { azimuth: 0, elevation: 0, distance: 4, target: [0, 1, 0], fov: 0.5 };
   listen(canvas, { camera: () => camera, framed: () => 4, moved() {} });
   const pointer = (kind, pointerId, clientX, clientY, more = {}) =>
-    canvas.dispatchEvent(eventOf(`pointer${kind}`, { pointerId, clientX, clientY, buttons: 1, shiftKey: false, ...more }));
+    canvas.dispatchEvent(
+      eventOf(`pointer${kind}`, { pointerId, clientX, clientY, buttons: 1, shiftKey: false, ...more }),
+    );
   const wheel = (given) => canvas.dispatchEvent(eventOf("wheel", { deltaMode: 0, ...given }));
   return { camera, pointer, wheel };
 }
@@ -57,9 +59,15 @@ test("a wheel zooms by its notches, in pixels or in lines", () => {
 test("shift and each arrow turn as a drag that way does", () => {
   const turns = [];
   const avatar = { turn: (...by) => turns.push(by) };
-  const keyed = (key, more) => pressed(Object.assign(eventOf("keydown", { key, shiftKey: true, composedPath: () => [{}] }), more), avatar);
+  const keyed = (key, more) =>
+    pressed(Object.assign(eventOf("keydown", { key, shiftKey: true, composedPath: () => [{}] }), more), avatar);
   for (const key of ["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown"]) assert.equal(keyed(key), true);
-  assert.deepEqual(turns, [[-20, 0], [20, 0], [0, -20], [0, 20]]);
+  assert.deepEqual(turns, [
+    [-20, 0],
+    [20, 0],
+    [0, -20],
+    [0, 20],
+  ]);
   for (const other of ["ctrlKey", "metaKey", "altKey"]) assert.equal(keyed("ArrowUp", { [other]: true }), false);
   assert.equal(turns.length, 4);
 });
@@ -75,7 +83,11 @@ test("files that are dropped are shown, and the mark of dropping goes with them"
   assert.deepEqual([[...marks], over.defaultPrevented], [["dropping"], true]);
   const drop = eventOf("drop", { dataTransfer: { files: ["a", "b"] } });
   avatar.dispatchEvent(drop);
-  assert.deepEqual([[...marks], added, drop.defaultPrevented], [[], [["a", "b"]], true], "else the browser opens the file");
+  assert.deepEqual(
+    [[...marks], added, drop.defaultPrevented],
+    [[], [["a", "b"]], true],
+    "else the browser opens the file",
+  );
   const text = eventOf("dragover", { dataTransfer: { types: ["text/plain"] } });
   avatar.dispatchEvent(text);
   assert.deepEqual([marks.size, text.defaultPrevented], [0, false]);

@@ -62,7 +62,14 @@ function fakeGpu() {
     noted,
     queue: { submit: () => (noted.submitted += 1) },
     createTexture({ size: [width, height], ...given }) {
-      const made = { width, height, ...given, destroyed: 0, createView: () => "picture", destroy: () => (made.destroyed += 1) };
+      const made = {
+        width,
+        height,
+        ...given,
+        destroyed: 0,
+        createView: () => "picture",
+        destroy: () => (made.destroyed += 1),
+      };
       noted.textures.push(made);
       return made;
     },
@@ -72,7 +79,8 @@ function fakeGpu() {
     createCommandEncoder: () => ({
       beginRenderPass(given) {
         const pass = { given };
-        for (const name of ["setPipeline", "setBindGroup", "setViewport", "draw", "end"]) pass[name] = (...all) => (pass[name] = all);
+        for (const name of ["setPipeline", "setBindGroup", "setViewport", "draw", "end"])
+          pass[name] = (...all) => (pass[name] = all);
         noted.passes.push(pass);
         return pass;
       },
@@ -85,18 +93,18 @@ function fakeGpu() {
 /** A headset that was opened, and what it asks of the player. */
 async function opened() {
   const gpu = fakeGpu();
-  const told = { drawn: [], failed: [], ended: 0 };
+  const reported = { drawn: [], failed: [], ended: 0 };
   const asks = {
     room: () => IDENTITY,
     draw(now, picture, eyes) {
-      if (told.fault) throw told.fault;
-      told.drawn.push({ now, picture, eyes });
+      if (reported.fault) throw reported.fault;
+      reported.drawn.push({ now, picture, eyes });
     },
-    fail: (error) => told.failed.push(error),
-    ended: () => (told.ended += 1),
+    fail: (error) => reported.failed.push(error),
+    ended: () => (reported.ended += 1),
   };
   const headset = await Headset.open({ gpu, free() {} }, asks);
-  return { headset, gpu, told, session: xr.session };
+  return { headset, gpu, reported, session: xr.session };
 }
 
 beforeEach(() => {
@@ -109,7 +117,7 @@ beforeEach(() => {
     createProjectionLayer({ colorFormat }) {
       return { colorFormat };
     }
-    getViewSubImage(layer, { eye }) {
+    getViewSubImage(_layer, { eye }) {
       const colorTexture = { width: 128, height: 168, createView: ({ eye: of }) => `image ${of}` };
       return { colorTexture, viewport: { ...VIEWPORT, x: VIEWPORT.x + eye }, getViewDescriptor: () => ({ eye }) };
     }
@@ -137,7 +145,7 @@ test("the session is asked for WebGPU and a floor", async () => {
   assert.equal(headset.layer.colorFormat, "bgra8unorm");
 });
 
-test("a headset that is refused is told in a sentence", async () => {
+test("a headset that is refused is reported in a sentence", async () => {
   xr.refused = "denied";
   await assert.rejects(opened(), { name: "AvatarError", message: "The headset cannot show the avatar: denied" });
 });
@@ -149,28 +157,61 @@ test("a session that cannot be used is ended", async () => {
 });
 
 test("a frame draws both eyes side by side and lays each on its part of its image", async () => {
-  const { gpu, told, session } = await opened();
+  const { gpu, reported, session } = await opened();
   session.show(VIEWS, 40);
-  const [{ now, picture, eyes }] = told.drawn;
+  const [{ now, picture, eyes }] = reported.drawn;
   assert.equal(now, 40);
-  assert.deepEqual(eyes.map(({ screen }) => screen), [[120, 160], [120, 160]]);
+  assert.deepEqual(
+    eyes.map(({ screen }) => screen),
+    [
+      [120, 160],
+      [120, 160],
+    ],
+  );
   assert.deepEqual([picture.width, picture.height, picture.usage], [240, 160, 20]);
-  assert.deepEqual(gpu.noted.passes.map(({ setViewport }) => setViewport), [[4, 6, 120, 160, 0, 1], [5, 6, 120, 160, 0, 1]]);
-  assert.deepEqual(gpu.noted.passes.map(({ draw }) => draw), [[3, 1, 0, 0], [3, 1, 0, 1]]);
-  assert.deepEqual(gpu.noted.passes.map(({ given }) => given.colorAttachments[0].view), ["image 0", "image 1"]);
-  assert.deepEqual(gpu.noted.pipelines.map(({ vertex, fragment }) => [vertex.constants, fragment.targets]), [[{ eyes: 2 }, [{ format: "bgra8unorm" }]]]);
+  assert.deepEqual(
+    gpu.noted.passes.map(({ setViewport }) => setViewport),
+    [
+      [4, 6, 120, 160, 0, 1],
+      [5, 6, 120, 160, 0, 1],
+    ],
+  );
+  assert.deepEqual(
+    gpu.noted.passes.map(({ draw }) => draw),
+    [
+      [3, 1, 0, 0],
+      [3, 1, 0, 1],
+    ],
+  );
+  assert.deepEqual(
+    gpu.noted.passes.map(({ given }) => given.colorAttachments[0].view),
+    ["image 0", "image 1"],
+  );
+  assert.deepEqual(
+    gpu.noted.pipelines.map(({ vertex, fragment }) => [vertex.constants, fragment.targets]),
+    [[{ eyes: 2 }, [{ format: "bgra8unorm" }]]],
+  );
   assert.equal(gpu.noted.submitted, 1);
 });
 
 test("each eye is seen through its own projection from its own place", async () => {
-  const { told, session } = await opened();
+  const { reported, session } = await opened();
   const other = view(1);
   other.projectionMatrix = CLIP.map((value, i) => (i === 0 ? 2 : i === 8 ? 0.25 : value));
   other.transform = { inverse: { matrix: IDENTITY.map((value, i) => (i === 12 ? -0.064 : value)) } };
   session.show([view(0), other]);
-  const [left, right] = told.drawn[0].eyes;
-  assert.deepEqual([left, right].map(({ position }) => position[0] + 0), [0, 0.064]);
-  assert.deepEqual([left, right].map(({ projection }) => [projection[0], projection[2] + 0]), [[1, 0], [2, 0.25]]);
+  const [left, right] = reported.drawn[0].eyes;
+  assert.deepEqual(
+    [left, right].map(({ position }) => position[0] + 0),
+    [0, 0.064],
+  );
+  assert.deepEqual(
+    [left, right].map(({ projection }) => [projection[0], projection[2] + 0]),
+    [
+      [1, 0],
+      [2, 0.25],
+    ],
+  );
 });
 
 test("the picture is kept from frame to frame, and made anew for images of another width or height", async () => {
@@ -184,42 +225,49 @@ test("the picture is kept from frame to frame, and made anew for images of anoth
   } finally {
     Object.assign(VIEWPORT, { width, height });
   }
-  assert.deepEqual(gpu.noted.textures.map(({ width: w, height: h, destroyed }) => [w, h, destroyed]), [[240, 160, 1], [180, 160, 1], [180, 100, 0]]);
+  assert.deepEqual(
+    gpu.noted.textures.map(({ width: w, height: h, destroyed }) => [w, h, destroyed]),
+    [
+      [240, 160, 1],
+      [180, 160, 1],
+      [180, 100, 0],
+    ],
+  );
 });
 
 test("while nobody knows where the head is, nothing is drawn and the next frame is waited for", async () => {
-  const { told, session } = await opened();
+  const { reported, session } = await opened();
   for (const nowhere of [null, []]) session.show(nowhere);
-  assert.deepEqual([told.drawn, told.failed], [[], []]);
+  assert.deepEqual([reported.drawn, reported.failed], [[], []]);
   session.show(VIEWS);
-  assert.equal(told.drawn.length, 1);
+  assert.equal(reported.drawn.length, 1);
 });
 
-test("a picture that cannot be drawn ends the session and is told once", async () => {
-  const { told, session } = await opened();
-  told.fault = new Error("lost");
+test("a picture that cannot be drawn ends the session and is reported once", async () => {
+  const { reported, session } = await opened();
+  reported.fault = new Error("lost");
   session.show(VIEWS);
   await settled();
   await settled();
   session.show(VIEWS);
-  assert.deepEqual([told.failed, told.ended, session.ended], [[told.fault], 1, 1]);
+  assert.deepEqual([reported.failed, reported.ended, session.ended], [[reported.fault], 1, 1]);
 });
 
 test("nothing is drawn once the headset was left, and its memory is given back", async () => {
-  const { gpu, headset, told, session } = await opened();
+  const { gpu, headset, reported, session } = await opened();
   session.show(VIEWS);
   headset.leave();
   session.show(VIEWS);
   await settled();
-  assert.equal(told.drawn.length, 1);
-  assert.deepEqual([told.ended, gpu.noted.textures[0].destroyed, session.frames.length], [1, 1, 0]);
+  assert.equal(reported.drawn.length, 1);
+  assert.deepEqual([reported.ended, gpu.noted.textures[0].destroyed, session.frames.length], [1, 1, 0]);
   headset.leave(); // twice is no fault
   await settled();
 });
 
-test("a session that the browser ends is told and gives its memory back", async () => {
-  const { gpu, told, session } = await opened();
+test("a session that the browser ends is reported and gives its memory back", async () => {
+  const { gpu, reported, session } = await opened();
   session.show(VIEWS);
   session.dispatchEvent(new Event("end"));
-  assert.deepEqual([told.ended, gpu.noted.textures[0].destroyed], [1, 1]);
+  assert.deepEqual([reported.ended, gpu.noted.textures[0].destroyed], [1, 1]);
 });

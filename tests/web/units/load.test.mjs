@@ -9,7 +9,11 @@ const sound = Uint8Array.from(readFileSync(new URL("../../golden/synthetic.muaav
 const load = (content, name) => loadHere(name ? new File([content], name) : new Blob([content]), () => {});
 
 for (const [what, content, said] of [
-  ["a page", "\n<!doctype html><title>Not found</title>", "this is a web page and not an avatar; is its address right?"],
+  [
+    "a page",
+    "\n<!doctype html><title>Not found</title>",
+    "this is a web page and not an avatar; is its address right?",
+  ],
   ["a page without a doctype", "<html><body>Not found", "this is a web page and not an avatar; is its address right?"],
   ["another file", "PK\x03\x04 and the rest of it", "this is not an avatar; expected a .muaavatar file."],
   ["two bytes", "no", "the file has 2 bytes, too few for a .muaavatar"],
@@ -22,7 +26,10 @@ for (const [what, content, said] of [
 test("an avatar that is damaged is said so, with the code of the fault", async () => {
   const damaged = sound.slice();
   damaged[damaged.length >> 1] ^= 255;
-  await assert.rejects(load(damaged, "a.muaavatar"), ({ code, message }) => code !== "" && message.startsWith("a.muaavatar: ") && /damaged/.test(message));
+  await assert.rejects(
+    load(damaged, "a.muaavatar"),
+    ({ code, message }) => code !== "" && message.startsWith("a.muaavatar: ") && /damaged/.test(message),
+  );
   assert.equal((await load(sound, "a.muaavatar")).clips.length, 1);
 });
 
@@ -36,7 +43,8 @@ function working(...messages) {
 
     postMessage(source) {
       worker.source = source;
-      for (const data of messages) queueMicrotask(() => (data === "fails" ? this.onerror(new Event("error")) : this.onmessage({ data })));
+      for (const data of messages)
+        queueMicrotask(() => (data === "fails" ? this.onerror(new Event("error")) : this.onmessage({ data })));
     }
   };
   return worker;
@@ -44,16 +52,27 @@ function working(...messages) {
 
 test("a worker reads an avatar, tells how far it is and what is there, and is ended", async () => {
   globalThis.document = { baseURI: "http://host/folder/page.html" };
-  const worker = working({ progress: { fraction: 0.5, sentence: "half" } }, { preview: "a part" }, { avatar: "all of it" });
-  const told = [];
-  const found = await loadApart("a.muaavatar", (...said) => told.push(said), (part) => told.push(part));
-  assert.deepEqual([found, told], ["all of it", [[0.5, "half"], "a part"]]);
+  const worker = working(
+    { progress: { fraction: 0.5, sentence: "half" } },
+    { preview: "a part" },
+    { avatar: "all of it" },
+  );
+  const reported = [];
+  const found = await loadApart(
+    "a.muaavatar",
+    (...said) => reported.push(said),
+    (part) => reported.push(part),
+  );
+  assert.deepEqual([found, reported], ["all of it", [[0.5, "half"], "a part"]]);
   assert.deepEqual([worker.source, worker.ended], ["http://host/folder/a.muaavatar", 1]);
 });
 
 test("what a worker finds wrong is an error of the page's own, with code and field, and the worker is ended", async () => {
-  const worker = working({ told: { message: "It is damaged.", code: "checksum", field: "clips" } });
-  await assert.rejects(loadApart(new Blob([sound]), () => {}), { name: "AvatarError", message: "It is damaged.", code: "checksum", field: "clips" });
+  const worker = working({ failure: { message: "It is damaged.", code: "checksum", field: "clips" } });
+  await assert.rejects(
+    loadApart(new Blob([sound]), () => {}),
+    { name: "AvatarError", message: "It is damaged.", code: "checksum", field: "clips" },
+  );
   assert.equal(worker.ended, 1);
 });
 
@@ -85,7 +104,11 @@ test("what is there of a file is shown while its rest does not come", async () =
   };
   const parts = [];
   const late = setTimeout(() => release(), 10_000);
-  const loaded = loadHere("http://host/packed.muaavatar", () => {}, (part) => (parts.push(part), clearTimeout(late), release()));
+  const loaded = loadHere(
+    "http://host/packed.muaavatar",
+    () => {},
+    (part) => (parts.push(part), clearTimeout(late), release()),
+  );
   assert.equal((await loaded).clips.length, 1);
   assert.equal(parts.length, 1);
 });
@@ -93,7 +116,13 @@ test("what is there of a file is shown while its rest does not come", async () =
 test("a download that is stopped ends its worker, and says why", async () => {
   const worker = working();
   const stopping = new AbortController();
-  const stopped = () => loadApart("http://host/a.muaavatar", () => {}, () => {}, stopping.signal);
+  const stopped = () =>
+    loadApart(
+      "http://host/a.muaavatar",
+      () => {},
+      () => {},
+      stopping.signal,
+    );
   const loads = stopped();
   stopping.abort(new Error("another one"));
   await assert.rejects(loads, { message: "another one" });

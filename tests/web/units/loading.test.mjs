@@ -51,13 +51,23 @@ class FakePlayer {
 /** A loading in an element, and all that it does to element, controls and page. */
 function begun(attributes = {}) {
   const done = [];
-  const say = (name) => (...given) => void done.push([name, ...given]);
+  const say =
+    (name) =>
+    (...given) =>
+      void done.push([name, ...given]);
   const element = new FakeElement(attributes);
   for (const name of ["load", "error", "progress"])
-    element.addEventListener(name, ({ detail }) => done.push([name, detail.message ?? detail.totalProgress ?? "handle"]));
+    element.addEventListener(name, ({ detail }) =>
+      done.push([name, detail.message ?? detail.totalProgress ?? "handle"]),
+    );
   const controls = Object.fromEntries(["load", "hush", "update", "say"].map((name) => [name, say(`controls.${name}`)]));
   Object.assign(controls, { canvas: {}, poster: { hidden: true } });
-  const asks = { opened: say("opened"), show: async (first) => say("show")(first), withdraw: async () => say("withdraw")(), emptied: say("emptied") };
+  const asks = {
+    opened: say("opened"),
+    show: async (first) => say("show")(first),
+    withdraw: async () => say("withdraw")(),
+    emptied: say("emptied"),
+  };
   const loading = new Loading(element, controls, asks);
   Object.defineProperty(element, "player", { get: () => loading.player });
   const named = (name) => done.filter(([each]) => each === name).map(([, ...given]) => given);
@@ -80,16 +90,22 @@ test("what src names is loaded one after the other, from where the page is", asy
   const loads = loading.reload();
   assert.equal(loading.begun, true);
   await loads;
-  assert.deepEqual(players.map(({ loaded }) => loaded), [["http://host/folder/a.muaavatar", "http://host/b.muaavatar"]]);
+  assert.deepEqual(
+    players.map(({ loaded }) => loaded),
+    [["http://host/folder/a.muaavatar", "http://host/b.muaavatar"]],
+  );
   assert.equal(players[0].playing, false);
   assert.deepEqual([named("opened").length, named("load").length, named("controls.hush").length], [1, 2, 2]);
   assert.deepEqual(named("show"), [[true], [true]]);
 });
 
-test("the controls follow an avatar before the page is told of it", async () => {
+test("the controls follow an avatar before the page hears of it", async () => {
   const { loading, done } = begun({ src: "a" });
   await loading.reload();
-  assert.deepEqual(done.slice(-3).map(([name]) => name), ["controls.hush", "controls.update", "load"]);
+  assert.deepEqual(
+    done.slice(-3).map(([name]) => name),
+    ["controls.hush", "controls.update", "load"],
+  );
 });
 
 test("an element whose src is taken away is empty and quiet", async () => {
@@ -171,7 +187,10 @@ test("an avatar that comes when another src was set goes again, unseen", async (
   await settled();
   assert.deepEqual(players[0].avatars, []);
   assert.equal(named("show").length, before);
-  assert.equal(named("controls.load").some(([, sentence]) => sentence === "late"), false);
+  assert.equal(
+    named("controls.load").some(([, sentence]) => sentence === "late"),
+    false,
+  );
   assert.deepEqual(named("load").length, 1);
 });
 
@@ -184,7 +203,10 @@ test("what follows in a src that was changed is not loaded", async () => {
   };
   await loading.reload();
   await settled();
-  assert.deepEqual(players.flatMap(({ loaded }) => loaded).map((each) => each.at(-1)), ["a", "c"]);
+  assert.deepEqual(
+    players.flatMap(({ loaded }) => loaded).map((each) => each.at(-1)),
+    ["a", "c"],
+  );
 });
 
 test("what fails after another src was set is not said", async () => {
@@ -267,11 +289,17 @@ test("a canvas has one player at a time, and those that nobody waits for are not
   assert.equal(players.length, 1, "the first has not given the canvas back");
   release();
   await Promise.all(loads);
-  assert.deepEqual(players.map(({ disposed, loaded }) => [disposed, loaded]), [[true, []], [false, ["http://host/folder/c"]]]);
+  assert.deepEqual(
+    players.map(({ disposed, loaded }) => [disposed, loaded]),
+    [
+      [true, []],
+      [false, ["http://host/folder/c"]],
+    ],
+  );
   assert.deepEqual([named("load").length, named("error")], [1, []]);
 });
 
-test("how far all of src is, and whether it is there, is told", async () => {
+test("how far all of src is, and whether it is there, is reported", async () => {
   const { loading, named } = begun({ src: "a b" });
   answers.a = ({ onProgress }) => onProgress(0.5, "half");
   answers.b = ({ onProgress }) => (assert.equal(loading.done, false), onProgress(1, "Ready"));

@@ -18,55 +18,64 @@ beforeEach(() => (frames = []));
 
 /** A loop of an element with one avatar, and what it does. */
 function begun(more = {}) {
-  const told = { drawn: 0, ticks: [], failed: [] };
+  const reported = { drawn: 0, ticks: [], failed: [] };
   const player = {
     playing: false,
     going: false,
     start: () => (player.going = true),
     stop: () => (player.going = false),
-    draw: async () => void (told.drawn += 1),
+    draw: async () => void (reported.drawn += 1),
     ...more,
   };
   const avatar = { player, avatars: ["one"] };
-  const asks = { tick: (seconds) => told.ticks.push(seconds), drawn() {}, fail: (error) => told.failed.push(error.message) };
-  return { loop: new Loop(avatar, asks), avatar, player, told };
+  const asks = {
+    tick: (seconds) => reported.ticks.push(seconds),
+    drawn() {},
+    fail: (error) => reported.failed.push(error.message),
+  };
+  return { loop: new Loop(avatar, asks), avatar, player, reported };
 }
 
 test("an avatar that nobody sees rests, and plays on when it is seen", async () => {
-  const { loop, player, told } = begun({ playing: true });
+  const { loop, player, reported } = begun({ playing: true });
   loop.pace();
   loop.setVisible(false);
   await show(performance.now());
-  assert.deepEqual([player.going, player.playing, told.ticks.length, frames.length], [false, true, 0, 0]);
+  assert.deepEqual([player.going, player.playing, reported.ticks.length, frames.length], [false, true, 0, 0]);
   loop.setVisible(true);
   await show(performance.now());
-  assert.deepEqual([player.going, told.ticks.length, frames.length], [true, 1, 1]);
+  assert.deepEqual([player.going, reported.ticks.length, frames.length], [true, 1, 1]);
 });
 
 test("a display that showed nothing for an hour is one short step", async () => {
-  const { loop, told } = begun({ playing: true });
+  const { loop, reported } = begun({ playing: true });
   loop.pace();
   await show(performance.now() + 3_600_000);
   await show(performance.now());
-  assert.deepEqual(told.ticks, [0.25, 0]);
+  assert.deepEqual(reported.ticks, [0.25, 0]);
 });
 
 test("what changes is drawn once, however often it is asked for", async () => {
-  const { loop, told } = begun();
+  const { loop, reported } = begun();
   for (let i = 0; i < 3; i++) loop.redraw();
   assert.equal(frames.length, 1);
   await show(0);
-  assert.deepEqual([told.drawn, frames.length], [1, 0]);
+  assert.deepEqual([reported.drawn, frames.length], [1, 0]);
 });
 
-test("a picture that fails is told; one of a player that was given back meanwhile is not", async () => {
-  for (const [given, wanted] of [[false, ["broken"]], [true, []]]) {
-    const { loop, avatar, told } = begun({ draw: async () => (await settled(), Promise.reject(new Error("broken"))) });
+test("a picture that fails is reported; one of a player that was given back meanwhile is not", async () => {
+  for (const [given, wanted] of [
+    [false, ["broken"]],
+    [true, []],
+  ]) {
+    const { loop, avatar, reported } = begun({
+      draw: async () => (await settled(), Promise.reject(new Error("broken"))),
+    });
     loop.redraw();
     const shown = show(0);
     if (given) avatar.player = null;
     await shown;
     await settled();
-    assert.deepEqual(told.failed, wanted);
+    assert.deepEqual(reported.failed, wanted);
   }
 });

@@ -22,7 +22,10 @@ export class FakeElement extends EventTarget {
   }
 }
 
-export const box = (width, middle = 0) => [[middle - width / 2, 0, -0.2], [middle + width / 2, 1.8, 0.2]];
+export const box = (width, middle = 0) => [
+  [middle - width / 2, 0, -0.2],
+  [middle + width / 2, 1.8, 0.2],
+];
 
 /** A player of avatars with these bounds; `framed` holds what it was asked to frame, one entry for each time. */
 export function fakePlayer(...bounds) {

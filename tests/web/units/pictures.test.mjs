@@ -3,16 +3,19 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { beforeEach, test } from "node:test";
+import { framing } from "../../../python/mua/web/camera.js";
 import { Engine } from "../../../python/mua/web/engine.js";
 import { read } from "../../../python/mua/web/format/read.js";
-import { framing } from "../../../python/mua/web/camera.js";
 import { boxAround } from "../../../python/mua/web/placement.js";
 import { Renderer } from "../../../python/mua/web/renderer.js";
 
 const content = readFileSync(new URL("../../golden/synthetic.muaavatar", import.meta.url));
 const golden = await read(Uint8Array.from(content).buffer);
 const FRAME = 1000 / golden.encoding.rate; // milliseconds
-const walking = { ...golden.clips[0], translation: golden.clips[0].translation.map((at, i) => (i % 3 ? at : at + i / 3)) }; // a metre a frame
+const walking = {
+  ...golden.clips[0],
+  translation: golden.clips[0].translation.map((at, i) => (i % 3 ? at : at + i / 3)),
+}; // a metre a frame
 const avatar = { ...golden, clips: [walking] };
 
 let device; // that was opened last
@@ -81,7 +84,7 @@ test("a picture that would be the same is not drawn again; what changes in it is
     () => (engine.avatars[0].place = [1, 0, 0]),
     () => (engine.avatars[0].place[2] = 3),
     () => (engine.time = 1 / avatar.encoding.rate),
-    () => (engine.show.mesh = true),
+    () => (engine.show.template = true),
     () => (engine.camera.azimuth = 1),
     () => (engine.level = "full"),
     () => (engine.budget = 5),
@@ -129,7 +132,10 @@ test("while kernels are still compiled, pictures are drawn without them, one aft
   assert.deepEqual(device.done, []);
   release();
   await new Promise((done) => setTimeout(done));
-  assert.deepEqual(device.done.map((each) => Object.keys(each)[0]), ["early"]);
+  assert.deepEqual(
+    device.done.map((each) => Object.keys(each)[0]),
+    ["early"],
+  );
   release();
   await drawn;
 });
@@ -150,7 +156,10 @@ test("a pose is decoded ahead while the display or a headset goes on, and exactl
 
 test("the whole of an avatar stands on its own ground, not on that of the part before it", async () => {
   const engine = await begun();
-  const low = { ...avatar, clips: [{ ...walking, translation: walking.translation.map((at, i) => (i % 3 === 1 ? at - 1 : at)) }] };
+  const low = {
+    ...avatar,
+    clips: [{ ...walking, translation: walking.translation.map((at, i) => (i % 3 === 1 ? at - 1 : at)) }],
+  };
   const part = await engine.put(low, null, false);
   const before = engine.posed()[0].ground;
   await engine.put(avatar, part, true);
@@ -176,7 +185,10 @@ test("in stereo an avatar is framed for one eye, which has half of the width", a
   engine.canvas.height = 300;
   const box = boxAround(engine.entries, engine.playback);
   const found = [];
-  for (const [stereo, screen] of [[false, [80, 300]], [true, [40, 300]]]) {
+  for (const [stereo, screen] of [
+    [false, [80, 300]],
+    [true, [40, 300]],
+  ]) {
     engine.stereo = stereo;
     engine.frameAll();
     assert.equal(engine.camera.distance, framing(box, engine.camera, screen).distance);
@@ -203,14 +215,14 @@ test("a device that is lost ends the headset's session", async () => {
   assert.equal(left, 1);
 });
 
-test("a picture that cannot be drawn stops the loop and is told", async () => {
+test("a picture that cannot be drawn stops the loop and is reported", async () => {
   const engine = await begun(avatar);
-  const told = [];
-  engine.onerror = ({ message }) => told.push(message);
+  const reported = [];
+  engine.onerror = ({ message }) => reported.push(message);
   device.draw = () => {
     throw new Error("too large");
   };
   engine.start();
   show(engine, 1);
-  assert.deepEqual([told, engine.request], [["The avatar cannot be drawn: too large"], 0]);
+  assert.deepEqual([reported, engine.request], [["The avatar cannot be drawn: too large"], 0]);
 });

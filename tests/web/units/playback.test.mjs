@@ -44,12 +44,24 @@ test("an avatar that is paused at its last frame stays there, and goes on with t
 test("each avatar plays its own clip of the name that was chosen, or its first", () => {
   const playback = playing(WALK, OTHER);
   playback.time = 40 / RATE;
-  assert.deepEqual([WALK, OTHER].map((one) => playback.clipOf(one).name), ["walk", "sit"]);
-  assert.deepEqual([WALK, OTHER].map((one) => playback.frameOf(one)), [40, 10]);
+  assert.deepEqual(
+    [WALK, OTHER].map((one) => playback.clipOf(one).name),
+    ["walk", "sit"],
+  );
+  assert.deepEqual(
+    [WALK, OTHER].map((one) => playback.frameOf(one)),
+    [40, 10],
+  );
   playback.clip = "wave";
   playback.time = 29 / RATE;
-  assert.deepEqual([WALK, OTHER].map((one) => playback.clipOf(one).frames), [30, 45]);
-  assert.deepEqual([WALK, OTHER].map((one) => playback.frameOf(one)), [29, 29]);
+  assert.deepEqual(
+    [WALK, OTHER].map((one) => playback.clipOf(one).frames),
+    [30, 45],
+  );
+  assert.deepEqual(
+    [WALK, OTHER].map((one) => playback.frameOf(one)),
+    [29, 29],
+  );
 });
 
 test("a pose of no time stands at the first frame", () => {

@@ -2,8 +2,8 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { ProgressiveLoad } from "../../../python/mua/web/progressive.js";
 import { AvatarError } from "../../../python/mua/web/error.js";
+import { ProgressiveLoad } from "../../../python/mua/web/progressive.js";
 
 const settled = () => new Promise((done) => setTimeout(done));
 
@@ -21,20 +21,24 @@ function arriving({ projecting = Promise.resolve(), put = async () => {} } = {})
       return shown;
     },
   };
-  const told = [];
-  const progressive = new ProgressiveLoad(engine, (handle) => told.push(handle));
-  return { progressive, engine, noted, told };
+  const reported = [];
+  const progressive = new ProgressiveLoad(engine, (handle) => reported.push(handle));
+  return { progressive, engine, noted, reported };
 }
 
 test("each part takes the place of the one before, the whole one the last", async () => {
-  const { progressive, engine, noted, told } = arriving();
+  const { progressive, engine, noted, reported } = arriving();
   for (const part of ["mesh", "coarse"]) {
     progressive.show(part);
     await settled();
   }
   const handle = await progressive.complete("all");
-  assert.deepEqual(noted, [["mesh", false], ["coarse", false], ["all", true]]);
-  assert.deepEqual([engine.entries.length, told], [1, [handle, handle]]);
+  assert.deepEqual(noted, [
+    ["mesh", false],
+    ["coarse", false],
+    ["all", true],
+  ]);
+  assert.deepEqual([engine.entries.length, reported], [1, [handle, handle]]);
 });
 
 test("of parts that came before the device can draw, the newest is shown", async () => {
@@ -60,7 +64,9 @@ test("a part that waits is left out once all of it is there", async () => {
 
 test("the whole avatar waits for the part that is being shown, and takes its place", async () => {
   let shown;
-  const { progressive, engine, noted } = arriving({ put: (avatar) => avatar === "mesh" && new Promise((done) => (shown = done)) });
+  const { progressive, engine, noted } = arriving({
+    put: (avatar) => avatar === "mesh" && new Promise((done) => (shown = done)),
+  });
   progressive.show("mesh");
   await settled();
   const whole = progressive.complete("all");
@@ -83,23 +89,23 @@ test("a download that fails takes away what was shown of it, also where a part i
   assert.deepEqual(early.noted, []);
 });
 
-test("a part that was removed meanwhile is not told", async () => {
-  const { progressive, engine, told } = arriving({ put: async () => void (engine.removing = true) });
+test("a part that was removed meanwhile is not reported", async () => {
+  const { progressive, engine, reported } = arriving({ put: async () => void (engine.removing = true) });
   engine.entries.push = () => {};
   progressive.show("mesh");
   await settled();
-  assert.deepEqual(told, []);
+  assert.deepEqual(reported, []);
 });
 
-test("kernels that do not compile are told by the whole avatar, not by its parts", async () => {
+test("kernels that do not compile are reported by the whole avatar, not by its parts", async () => {
   const refused = async () => {
     throw new AvatarError("The graphics device refused.");
   };
-  const { progressive, told } = arriving({ projecting: Promise.reject(new Error("compile")), put: refused });
+  const { progressive, reported } = arriving({ projecting: Promise.reject(new Error("compile")), put: refused });
   progressive.show("mesh");
   await settled();
   await assert.rejects(progressive.complete("all"), /refused/);
-  assert.deepEqual(told, []);
+  assert.deepEqual(reported, []);
 });
 
 test("a part that breaks for another reason fails the whole", async () => {

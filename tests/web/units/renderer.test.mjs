@@ -8,9 +8,21 @@ import { read } from "../../../python/mua/web/format/read.js";
 import { Renderer } from "../../../python/mua/web/renderer.js";
 import { fakeGpu } from "./gpu.mjs";
 
-const LOOK = { camera: { azimuth: 0, elevation: 0, distance: 3, target: [0, 1, 0], fov: 0.5 }, stereo: false, level: "full", budget: null };
+const LOOK = {
+  camera: { azimuth: 0, elevation: 0, distance: 3, target: [0, 1, 0], fov: 0.5 },
+  stereo: false,
+  level: "full",
+  budget: null,
+};
 const SKELETON = { names: ["root"], parents: [-1], root: 0, bindTranslations: new Float32Array(3), translated: [] };
-const CLIP = { name: "walk", rate: 30, frames: 2, rotations: Float32Array.of(1, 0, 0, 0, 1, 0, 0, 0), translation: new Float32Array(6), translations: [] };
+const CLIP = {
+  name: "walk",
+  rate: 30,
+  frames: 2,
+  rotations: Float32Array.of(1, 0, 0, 0, 1, 0, 0, 0),
+  translation: new Float32Array(6),
+  translations: [],
+};
 
 /** An avatar on the device that notes what is done with it; `changes` says whether each decode shows other channels. */
 function slotOf({ changes = [], level = 0 } = {}) {
@@ -29,7 +41,15 @@ function slotOf({ changes = [], level = 0 } = {}) {
   return slot;
 }
 
-const posedOf = (slot, more = {}) => ({ slot, clip: CLIP, frame: 0, following: 1, place: [0, 0, 0], ground: 0, ...more });
+const posedOf = (slot, more = {}) => ({
+  slot,
+  clip: CLIP,
+  frame: 0,
+  following: 1,
+  place: [0, 0, 0],
+  ground: 0,
+  ...more,
+});
 const pose = (posed, look = {}) => Renderer.prototype.pose.call({}, "pass", posed, { ...LOOK, show: {}, ...look }, []);
 const moves = (slot) => slot.done.splice(0).filter((each) => typeof each === "string");
 
@@ -48,10 +68,18 @@ test("an avatar is posed where it was decoded anew or stands elsewhere, and rest
 });
 
 test("each avatar is decoded at the level that is asked for, the finest where its surface is shown", () => {
-  for (const [look, wanted] of [[{ level: 32 }, 1], [{ level: "full" }, 0], [{ level: 32, show: { geometry: true } }, 0]]) {
+  for (const [look, wanted] of [
+    [{ level: 32 }, 1],
+    [{ level: "full" }, 0],
+    [{ level: 32, show: { geometry: true } }, 0],
+  ]) {
     const slot = slotOf();
     pose([posedOf(slot)], look);
-    assert.deepEqual(slot.done[0], { due: { clip: "walk", frame: 0 }, following: { clip: "walk", frame: 1 }, level: wanted });
+    assert.deepEqual(slot.done[0], {
+      due: { clip: "walk", frame: 0 },
+      following: { clip: "walk", frame: 1 },
+      level: wanted,
+    });
   }
 });
 
@@ -75,7 +103,10 @@ test("an avatar that takes the place of its part stands where that stood, which 
   const renderer = holding(first, part, last, whole);
   Renderer.prototype.replace.call(renderer, part, whole);
   assert.deepEqual(renderer.slots, [first, whole, last]);
-  assert.deepEqual([first, part, last, whole].map(({ freed }) => freed), [0, 1, 0, 0]);
+  assert.deepEqual(
+    [first, part, last, whole].map(({ freed }) => freed),
+    [0, 1, 0, 0],
+  );
 });
 
 test("an avatar that goes leaves the others and gives its memory back", () => {
@@ -113,7 +144,10 @@ test("an avatar that the device has no room for is a sentence, and the others ke
   const slot = await renderer.add(golden);
   const before = [renderer.bytes, gpu.held.size];
   gpu.lacking = { message: "out of memory" };
-  await assert.rejects(renderer.add(golden), { name: "AvatarError", message: /too little free memory for this avatar/ });
+  await assert.rejects(renderer.add(golden), {
+    name: "AvatarError",
+    message: /too little free memory for this avatar/,
+  });
   assert.deepEqual([renderer.slots, renderer.bytes, gpu.held.size], [[slot], ...before]);
 });
 
@@ -121,7 +155,10 @@ test("an avatar of which a buffer is too large for the device is given back", as
   const { gpu, renderer } = opened();
   const before = [renderer.bytes, gpu.held.size];
   gpu.limits.maxBufferSize = 4096;
-  await assert.rejects(renderer.add(golden), { name: "AvatarError", message: /more than the 4096 that this device can bind/ });
+  await assert.rejects(renderer.add(golden), {
+    name: "AvatarError",
+    message: /more than the 4096 that this device can bind/,
+  });
   assert.deepEqual([renderer.slots, renderer.bytes, gpu.held.size], [[], ...before]);
 });
 

@@ -8,7 +8,7 @@ import { SplatFrame } from "../../../python/mua/web/splats.js";
 globalThis.GPUTextureUsage = { RENDER_ATTACHMENT: 16 };
 
 const CAMERAS = [0, 1].map((eye) => ({ eye, screen: [40, 30], viewProjection: `eye ${eye}` }));
-const NOTHING = { splats: false, geometry: false, mesh: false, skeleton: false, shadow: false };
+const NOTHING = { splats: false, geometry: false, template: false, skeleton: false, shadow: false };
 
 /** All that a picture of avatars draws; `bare` ones have no splats. */
 function drawn(show, { cameras = CAMERAS.slice(0, 1), bare = [false], seen = bare.map(() => true) } = {}) {
@@ -30,15 +30,28 @@ function drawn(show, { cameras = CAMERAS.slice(0, 1), bare = [false], seen = bar
   };
   const scene = Object.create(Scene.prototype);
   scene.depthOf = () => ({ createView() {} });
-  scene.splats = { bind: (_, __, { eye, view_projection: seenBy }) => done.push(`splats of ${seenBy} with the colours of ${eye}`) };
+  scene.splats = {
+    bind: (_, __, { eye, view_projection: seenBy }) => done.push(`splats of ${seenBy} with the colours of ${eye}`),
+  };
   const frame = { seen, starts: bare.map((_, i) => 10 * i), splats: "splats" };
-  scene.draw({ beginRenderPass: () => pass }, { createView() {} }, { frame, overlays, cameras, show: { ...NOTHING, ...show } });
+  scene.draw(
+    { beginRenderPass: () => pass },
+    { createView() {} },
+    { frame, overlays, cameras, show: { ...NOTHING, ...show } },
+  );
   return done.filter((each) => !each.startsWith("cut") && each !== "end");
 }
 
-test("shadow, geometry or mesh, splats and skeleton follow each other", () => {
-  const all = drawn({ splats: true, geometry: true, mesh: true, skeleton: true, shadow: true });
-  const parts = ["geometry 0 from 0 for 0", "template 0 for 0", "ground 0 for 0", "splats of eye 0 with the colours of 0", "drawn", "skeleton 0 for 0"];
+test("shadow, geometry or template, splats and skeleton follow each other", () => {
+  const all = drawn({ splats: true, geometry: true, template: true, skeleton: true, shadow: true });
+  const parts = [
+    "geometry 0 from 0 for 0",
+    "template 0 for 0",
+    "ground 0 for 0",
+    "splats of eye 0 with the colours of 0",
+    "drawn",
+    "skeleton 0 for 0",
+  ];
   assert.deepEqual(all, ["mask 0", "view 0,0,40,30", ...parts]);
 });
 
@@ -46,7 +59,7 @@ test("only what is asked for is drawn", () => {
   for (const [name, wanted] of Object.entries({
     splats: ["splats of eye 0 with the colours of 0", "drawn"],
     geometry: ["geometry 0 from 0 for 0"],
-    mesh: ["template 0 for 0"],
+    template: ["template 0 for 0"],
     skeleton: ["skeleton 0 for 0"],
   }))
     assert.deepEqual(drawn({ [name]: true }).slice(1), wanted);
@@ -54,16 +67,29 @@ test("only what is asked for is drawn", () => {
 });
 
 test("each eye has its part of the picture, its camera and its colours", () => {
-  const all = drawn({ splats: true, mesh: true }, { cameras: CAMERAS });
-  assert.deepEqual(all.filter((each) => each !== "drawn"), [
-    "view 0,0,40,30", "template 0 for 0", "splats of eye 0 with the colours of 0",
-    "view 40,0,40,30", "template 0 for 1", "splats of eye 1 with the colours of 1",
-  ]);
+  const all = drawn({ splats: true, template: true }, { cameras: CAMERAS });
+  assert.deepEqual(
+    all.filter((each) => each !== "drawn"),
+    [
+      "view 0,0,40,30",
+      "template 0 for 0",
+      "splats of eye 0 with the colours of 0",
+      "view 40,0,40,30",
+      "template 0 for 1",
+      "splats of eye 1 with the colours of 1",
+    ],
+  );
 });
 
-test("an avatar that has no splats yet is shown by its mesh in their place", () => {
-  assert.deepEqual(drawn({ splats: true }, { bare: [true, false] }).filter((each) => each.startsWith("template")), ["template 0 for 0"]);
-  assert.deepEqual(drawn({ skeleton: true }, { bare: [true] }).filter((each) => each.startsWith("template")), []);
+test("an avatar that has no splats yet is shown by its template in their place", () => {
+  assert.deepEqual(
+    drawn({ splats: true }, { bare: [true, false] }).filter((each) => each.startsWith("template")),
+    ["template 0 for 0"],
+  );
+  assert.deepEqual(
+    drawn({ skeleton: true }, { bare: [true] }).filter((each) => each.startsWith("template")),
+    [],
+  );
 });
 
 test("the surface of an avatar is drawn through its own splats, and not where they were not placed", () => {
@@ -73,10 +99,23 @@ test("the surface of an avatar is drawn through its own splats, and not where th
 
 test("the depth is kept for targets of one size and made anew for another", () => {
   const made = [];
-  const createTexture = ({ size: [width, height] }) => (made.push({ width, height, destroyed: 0, destroy: () => (made.at(0).destroyed += 1) }), made.at(-1));
+  const createTexture = ({ size: [width, height] }) => (
+    made.push({ width, height, destroyed: 0, destroy: () => (made.at(0).destroyed += 1) }), made.at(-1)
+  );
   const scene = Object.assign(Object.create(Scene.prototype), { device: { gpu: { createTexture } }, depth: null });
-  for (const [width, height] of [[4, 3], [4, 3], [4, 5]]) scene.depthOf({ width, height });
-  assert.deepEqual(made.map(({ width, height, destroyed }) => [width, height, destroyed]), [[4, 3, 1], [4, 5, 0]]);
+  for (const [width, height] of [
+    [4, 3],
+    [4, 3],
+    [4, 5],
+  ])
+    scene.depthOf({ width, height });
+  assert.deepEqual(
+    made.map(({ width, height, destroyed }) => [width, height, destroyed]),
+    [
+      [4, 3, 1],
+      [4, 5, 0],
+    ],
+  );
 });
 
 test("splats of avatars in view come before those of the others, at even places", () => {

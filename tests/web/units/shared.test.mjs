@@ -1,4 +1,4 @@
-// Which players of a page share a device, when it is opened, closed and lost, and who is told; the devices are stand-ins.
+// Which players of a page share a device, when it is opened, closed and lost, and who hears of it; the devices are stand-ins.
 
 import assert from "node:assert/strict";
 import { beforeEach, mock, test } from "node:test";
@@ -13,8 +13,8 @@ mock.timers.enable({ apis: ["setTimeout"] });
 class FakeDevice {
   destroyed = 0;
   gpu = { destroy: () => (this.destroyed += 1) };
-  lose = () => this.told?.();
-  whenLost = (told) => (this.told = told);
+  lose = () => this.listener?.();
+  whenLost = (listener) => (this.listener = listener);
 }
 
 beforeEach(() => {
@@ -73,19 +73,22 @@ test("a device that does not open is asked for again", async () => {
   assert.equal(await takeDevice(), devices[0]);
 });
 
-test("those that still want to know are told once that a device is lost, and those that ask later at once", async () => {
+test("listeners hear once that a device is lost, and later ones at once", async () => {
   globalThis.GPUBufferUsage = {};
   let lose;
   const lost = new Promise((done) => (lose = done));
   const device = new Device({ info: {} }, { lost, features: new Set(), createBuffer: () => ({}) });
-  const [told, gone] = [[], new AbortController()];
-  device.whenLost((reason) => told.push(["stays", reason]));
-  device.whenLost((reason) => told.push(["gone", reason]), gone.signal);
+  const [reported, gone] = [[], new AbortController()];
+  device.whenLost((reason) => reported.push(["stays", reason]));
+  device.whenLost((reason) => reported.push(["gone", reason]), gone.signal);
   gone.abort();
   assert.equal(device.losing.size, 1);
   lose({ reason: "unknown" });
   await lost;
-  device.whenLost((reason) => told.push(["later", reason]));
+  device.whenLost((reason) => reported.push(["later", reason]));
   await null;
-  assert.deepEqual(told, [["stays", "unknown"], ["later", "unknown"]]);
+  assert.deepEqual(reported, [
+    ["stays", "unknown"],
+    ["later", "unknown"],
+  ]);
 });

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { Stage } from "../../../python/mua/web/stage.js";
-import { box, fakePlayer, FakeElement } from "./page.mjs";
+import { box, FakeElement, fakePlayer } from "./page.mjs";
 
 const DEGREE = Math.PI / 180;
 
@@ -25,7 +25,14 @@ test("several stand side by side, their row in the middle, with 15 cm between th
   const spans = player.avatars.map(({ bounds: [low, high], place }) => [low[0] + place[0], high[0] + place[0]]);
   for (const [i, [low]] of spans.slice(1).entries()) assert.ok(Math.abs(low - spans[i][1] - 0.15) < 1e-12);
   assert.ok(Math.abs(spans[0][0] + spans[2][1]) < 1e-12);
-  assert.deepEqual(player.avatars.map(({ place }) => place.slice(1)), [[0, 0], [0, 0], [0, 0]]);
+  assert.deepEqual(
+    player.avatars.map(({ place }) => place.slice(1)),
+    [
+      [0, 0],
+      [0, 0],
+      [0, 0],
+    ],
+  );
 });
 
 test("the camera stands where the attributes say and sees all", () => {
@@ -84,7 +91,14 @@ test("a drag turns the camera: right, and up over the horizon", () => {
 test("where nothing is shown, nothing moves", () => {
   const element = new FakeElement({ orbit: "12" });
   const stage = new Stage(element);
-  for (const act of [() => stage.reset(), () => stage.lookAtNext(), () => stage.orbit(1), () => stage.turn(1, 1), () => stage.zoom(1)]) act();
+  for (const act of [
+    () => stage.reset(),
+    () => stage.lookAtNext(),
+    () => stage.orbit(1),
+    () => stage.turn(1, 1),
+    () => stage.zoom(1),
+  ])
+    act();
   element.player = fakePlayer();
   stage.reset();
   stage.lookAtNext();

@@ -6,8 +6,8 @@ import { beforeEach, test } from "node:test";
 import { read } from "../../../python/mua/web/format/read.js";
 import { handleOf } from "../../../python/mua/web/handle.js";
 import { Headset } from "../../../python/mua/web/headset.js";
-import { Playback } from "../../../python/mua/web/playback.js";
 import { boxAround, groundOf } from "../../../python/mua/web/placement.js";
+import { Playback } from "../../../python/mua/web/playback.js";
 import { VR } from "../../../python/mua/web/vr.js";
 
 const content = readFileSync(new URL("../../golden/synthetic.muaavatar", import.meta.url));
@@ -17,20 +17,24 @@ const BEFORE = 1.2; // metres between the reader and what is nearest
 let headsets; // that were opened
 
 function engineOf(...places) {
-  const told = { vr: [], failed: [], drawn: 0, submitted: [] };
+  const noted = { vr: [], failed: [], drawn: 0, submitted: [] };
   const engine = {
-    told,
-    entries: places.map((place) => ({ avatar, grounds: new Map(), handle: { ...handleOf(avatar, { remove() {}, outside: () => 0 }), place } })),
+    noted,
+    entries: places.map((place) => ({
+      avatar,
+      grounds: new Map(),
+      handle: { ...handleOf(avatar, { remove() {}, outside: () => 0 }), place },
+    })),
     camera: { azimuth: 0.7 },
     drawn: "what the canvas shows",
     way: [0, 0, 0],
     followed: () => engine.way,
-    renderer: { device: "device", submit: (...given) => told.submitted.push(given) },
+    renderer: { device: "device", submit: (...given) => noted.submitted.push(given) },
     posed: () => "posed",
     look: "look",
-    drawNow: () => (told.drawn += 1),
-    onvr: (vr) => told.vr.push(vr),
-    fail: (error) => told.failed.push(error),
+    drawNow: () => (noted.drawn += 1),
+    onvr: (vr) => noted.vr.push(vr),
+    fail: (error) => noted.failed.push(error),
   };
   engine.playback = new Playback(() => engine.entries[0]?.handle.clips ?? []);
   return engine;
@@ -45,17 +49,28 @@ beforeEach(() => {
   };
 });
 
-const moved = (matrix, point) => [0, 4, 8].map((row) => [0, 1, 2].reduce((sum, i) => sum + matrix[row + i] * point[i], matrix[row + 3]));
-const near = (found, wanted) => found.forEach((value, i) => assert.ok(Math.abs(value - wanted[i]) < 1e-9, `${found} is not ${wanted}`));
+const moved = (matrix, point) =>
+  [0, 4, 8].map((row) => [0, 1, 2].reduce((sum, i) => sum + matrix[row + i] * point[i], matrix[row + 3]));
+const near = (found, wanted) =>
+  found.forEach((value, i) => assert.ok(Math.abs(value - wanted[i]) < 1e-9, `${found} is not ${wanted}`));
 
 /** Middle of their box on the lowest ground, and half of the box' diagonal along the ground. */
 function foot(engine) {
   const box = boxAround(engine.entries, engine.playback);
   const grounds = engine.entries.map((entry) => groundOf(entry, engine.playback) + entry.handle.place[1]);
-  return [[(box[0] + box[3]) / 2, Math.min(...grounds), (box[2] + box[5]) / 2], Math.hypot(box[3] - box[0], box[5] - box[2]) / 2];
+  return [
+    [(box[0] + box[3]) / 2, Math.min(...grounds), (box[2] + box[5]) / 2],
+    Math.hypot(box[3] - box[0], box[5] - box[2]) / 2,
+  ];
 }
 
-for (const places of [[[0, 0, 0]], [[-1, 0.3, 0], [1, -0.2, 2]]])
+for (const places of [
+  [[0, 0, 0]],
+  [
+    [-1, 0.3, 0],
+    [1, -0.2, 2],
+  ],
+])
   test(`${places.length} avatars stand on the floor before the reader, the lowest of them`, () => {
     const engine = engineOf(...places);
     const [middle, reach] = foot(engine);
@@ -70,7 +85,13 @@ test("they are seen from the side from which the page shows them", () => {
   const [middle, reach] = foot(engine);
   const room = new VR(engine).standing()();
   const towards = [Math.sin(0.7), 0, Math.cos(0.7)]; // where the page's camera stands
-  near(moved(room, middle.map((at, axis) => at + towards[axis])), [0, 0, 1 - BEFORE - reach]);
+  near(
+    moved(
+      room,
+      middle.map((at, axis) => at + towards[axis]),
+    ),
+    [0, 0, 1 - BEFORE - reach],
+  );
 });
 
 test("a figure that is followed stays before the reader", () => {
@@ -83,15 +104,15 @@ test("a figure that is followed stays before the reader", () => {
   near(moved(room(), [middle[0] + 0.5, middle[1], middle[2] + 2]), [0, 0, -BEFORE - reach]);
 });
 
-test("entering and leaving is told, and the canvas gets its picture back", async () => {
+test("entering and leaving is noted, and the canvas gets its picture back", async () => {
   const engine = engineOf([0, 0, 0]);
   const vr = new VR(engine);
   await vr.enter();
-  assert.deepEqual([vr.headset, engine.told.vr, headsets[0].device], [headsets[0], [true], "device"]);
+  assert.deepEqual([vr.headset, engine.noted.vr, headsets[0].device], [headsets[0], [true], "device"]);
   vr.leave();
   assert.equal(headsets[0].left, 1);
   headsets[0].asks.ended();
-  assert.deepEqual([vr.headset, engine.told.vr, engine.told.drawn, engine.drawn], [null, [true, false], 1, ""]);
+  assert.deepEqual([vr.headset, engine.noted.vr, engine.noted.drawn, engine.drawn], [null, [true, false], 1, ""]);
   vr.leave();
   assert.equal(headsets[0].left, 1);
 });
@@ -103,9 +124,9 @@ test("a frame of the headset moves the clip on and draws what is posed", async (
   engine.playback.playing = true;
   headsets[0].asks.draw(100, "picture", "eyes");
   assert.ok(Math.abs(engine.playback.time - 0.1) < 1e-12);
-  assert.deepEqual(engine.told.submitted, [["picture", "posed", "look", "eyes"]]);
+  assert.deepEqual(engine.noted.submitted, [["picture", "posed", "look", "eyes"]]);
   headsets[0].asks.fail("broken");
-  assert.deepEqual(engine.told.failed, ["broken"]);
+  assert.deepEqual(engine.noted.failed, ["broken"]);
 });
 
 test("a second click opens no second session, neither while the first opens nor after", async () => {
@@ -131,7 +152,7 @@ test("without an avatar or a device there is nothing to show", async () => {
   assert.equal(headsets.length, 0);
 });
 
-test("a device that is lost while the session opens ends it, and nobody is told of a beginning or an end", async () => {
+test("a device that is lost while the session opens ends it, and nobody is noted of a beginning or an end", async () => {
   const engine = engineOf([0, 0, 0]);
   const vr = new VR(engine);
   const entering = vr.enter();
@@ -139,5 +160,5 @@ test("a device that is lost while the session opens ends it, and nobody is told 
   await entering;
   assert.deepEqual([headsets[0].left, vr.headset], [1, null]);
   headsets[0].asks.ended();
-  assert.deepEqual([engine.told.vr, engine.told.drawn], [[], 0]);
+  assert.deepEqual([engine.noted.vr, engine.noted.drawn], [[], 0]);
 });

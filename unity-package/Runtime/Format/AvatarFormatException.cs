@@ -3,7 +3,7 @@ using System.Globalization;
 
 namespace Mua.Format
 {
-    /// <summary>A file that is not a sound `.muaavatar`; code and field are those of every reader (schemas/README.md).</summary>
+    /// <summary>A file that is not a sound `.muaavatar`; every reader reports the same code and field (schemas/README.md).</summary>
     public sealed class AvatarFormatException : Exception
     {
         /// <summary>What kind of fault it is: `truncated`, `offset`, `missing`, `shape` and so on.</summary>

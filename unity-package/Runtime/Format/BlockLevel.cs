@@ -11,7 +11,7 @@ namespace Mua.Format
         /// <summary>Texels of a block.</summary>
         public const int Four = 4;
 
-        /// <summary>Of the standard deviations, where one splat stands for four.</summary>
+        /// <summary>Factor of the standard deviations where one splat stands for four.</summary>
         public const double Growth = Limits.Growth;
 
         private readonly int[] finer; // [B, 4] valid texels of the finer level, -1 for none

@@ -49,7 +49,7 @@ namespace Mua.Format
             return false;
         }
 
-        /// <summary>Whether all corners of the triangles that a code tells of are valid texels.</summary>
+        /// <summary>Whether all corners of a code's triangles are valid texels.</summary>
         public bool Holds(int code)
         {
             bool isRising = (code & Rising) != 0;
@@ -58,7 +58,7 @@ namespace Mua.Format
             return ((code & First) == 0 || hasFirst) && ((code & Second) == 0 || hasSecond);
         }
 
-        /// <summary>Appends the triangles that a code tells of.</summary>
+        /// <summary>Appends a code's triangles.</summary>
         public void Add(int code, List<int> triangles)
         {
             bool isRising = (code & Rising) != 0, isTurned = (code & Turned) != 0;

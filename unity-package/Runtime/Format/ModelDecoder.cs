@@ -57,7 +57,7 @@ namespace Mua.Format
             return new Coarse { Mlp = mlp, Mean = mean, Basis = basis };
         }
 
-        /// <summary>Over `count` texels with an LL of `side`, driven by so many components, as Appearance is.</summary>
+        /// <summary>A branch over `count` texels with an LL of `side`, driven by so many components.</summary>
         public Branch Geometry(Table tree, int count, int inputs, int side)
         {
             return Branch(tree, "geometry", GeometryChannels, count, inputs, side);

@@ -40,7 +40,7 @@ namespace Mua.Format
         /// <summary>Bytes that the elements fill.</summary>
         public int ByteLength { get; internal set; }
 
-        /// <summary>Of I8, one factor for each of as many equal rows; null for other types.</summary>
+        /// <summary>Scales of I8, one for each of as many equal rows; null for other types.</summary>
         public float[] Scale { get; internal set; }
 
         /// <summary>A tensor of values that are not in the file.</summary>

@@ -118,7 +118,7 @@ namespace Mua.Format
         {
             if (count == 0)
             {
-                return; // not every language tells a damaged stream of nothing from a whole one
+                return; // not every language can distinguish a damaged empty stream from a sound one
             }
             int found = 0;
             bool ends;

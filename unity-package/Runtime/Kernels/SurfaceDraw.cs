@@ -13,7 +13,7 @@ namespace Mua
         public const int BoneOutline = 0, Bone = 1, JointOutline = 2, Joint = 3;
 
         private const string File = "the surface shader";
-        private const int GeometryPass = 0, MeshPass = 1, SkeletonPass = 2;
+        private const int GeometryPass = 0, TemplatePass = 1, SkeletonPass = 2;
         private const int VerticesPerStroke = 6;
         private const float BoneWidth = 2.5f, JointWidth = 5, Outline = 1.5f; // pixels
 
@@ -35,7 +35,7 @@ namespace Mua
         private static readonly int EyeCount = Shader.PropertyToID("eye_count");
 
         private static readonly Vector4 GeometryColor = new Vector4(0.80f, 0.78f, 0.75f, 1); // sRGB, as all here
-        private static readonly Vector4 MeshColor = new Vector4(0.62f, 0.72f, 0.84f, 1);
+        private static readonly Vector4 TemplateColor = new Vector4(0.62f, 0.72f, 0.84f, 1);
         private static readonly Vector4[] StrokeStyles = // and width
         {
             new Vector4(0.12f, 0.10f, 0.08f, BoneWidth + 2 * Outline),
@@ -45,7 +45,7 @@ namespace Mua
         };
 
         private readonly MaterialPropertyBlock geometry = new MaterialPropertyBlock();
-        private readonly MaterialPropertyBlock mesh = new MaterialPropertyBlock();
+        private readonly MaterialPropertyBlock template = new MaterialPropertyBlock();
         private readonly MaterialPropertyBlock skeleton = new MaterialPropertyBlock();
         private readonly MaterialPropertyBlock shadow = new MaterialPropertyBlock();
 
@@ -76,14 +76,14 @@ namespace Mua
         }
 
         /// <summary>The posed template.</summary>
-        public AvatarDraw BindMesh(AvatarFrame frame, AvatarEyes eyes, GraphicsBuffer indices)
+        public AvatarDraw BindTemplate(AvatarFrame frame, AvatarEyes eyes, GraphicsBuffer indices)
         {
-            mesh.SetBuffer(VertexDq, frame.VertexDq);
-            mesh.SetBuffer(Mesh, frame.Mesh);
-            mesh.SetFloat(Size, frame.Size);
-            mesh.SetVector(Color, MeshColor);
-            Bind(mesh, eyes);
-            return AvatarDraw.Direct(Material, MeshPass, mesh, indices.count, indices);
+            template.SetBuffer(VertexDq, frame.VertexDq);
+            template.SetBuffer(Mesh, frame.Mesh);
+            template.SetFloat(Size, frame.Size);
+            template.SetVector(Color, TemplateColor);
+            Bind(template, eyes);
+            return AvatarDraw.Direct(Material, TemplatePass, template, indices.count, indices);
         }
 
         /// <summary>The bones.</summary>

@@ -130,7 +130,7 @@ namespace Mua.SelfTest
             }
         }
 
-        /// <summary>Of values row by row.</summary>
+        /// <summary>Matrices from values in row-major order.</summary>
         private static Matrix4x4[] Matrices(double[] values)
         {
             var matrices = new Matrix4x4[values.Length / 16];

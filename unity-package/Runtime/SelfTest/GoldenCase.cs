@@ -42,7 +42,7 @@ namespace Mua.SelfTest
         public int count = 0;
         public int offset = 0;
 
-        /// <summary>Of one element, in 4 bytes each; 0 where the type is not known.</summary>
+        /// <summary>Words (4 bytes) of one element; 0 for an unknown type.</summary>
         public int Words
         {
             get
@@ -106,7 +106,7 @@ namespace Mua.SelfTest
             return Number(BitConverter.ToUInt32(binary, offset + sizeof(uint) * value));
         }
 
-        /// <summary>Whether a value is as near as it must be; no number is not.</summary>
+        /// <summary>Whether a value is within its tolerance; NaN never is.</summary>
         public bool Allows(double found, double wanted)
         {
             return Math.Abs(found - wanted) - absolute - relative * Math.Abs(wanted) <= 0;

@@ -25,7 +25,7 @@ namespace Mua.SelfTest
         /// <summary>Bytes that the cases' offsets point into.</summary>
         public byte[] Binary { get; private set; }
 
-        /// <summary>Of the kernel's file.</summary>
+        /// <summary>Stem of the kernel's file.</summary>
         public string Stem => stem;
 
         /// <summary>What STEM.json and STEM.bin hold; InvalidDataException says what is wrong with them.</summary>

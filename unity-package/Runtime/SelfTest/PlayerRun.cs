@@ -7,7 +7,7 @@ namespace Mua.SelfTest
     /// <summary>Starts in a player what its command line asks for: the self-test or a bench.</summary>
     internal sealed class PlayerRun : MonoBehaviour
     {
-        /// <summary>Of the command line; null where it asks for nothing.</summary>
+        /// <summary>The run that the command line asks for; null where it asks for none.</summary>
         public static PlayerRun Begin(string[] words)
         {
             var line = new CommandLine(words);
@@ -54,7 +54,7 @@ namespace Mua.SelfTest
         }
     }
 
-    /// <summary>What mua-deploy told the player (docs/deploy.md).</summary>
+    /// <summary>Arguments that mua-deploy gives the player (docs/deploy.md).</summary>
     internal sealed class CommandLine
     {
         private const string DefaultRun = "00000000"; // for people who start the player by hand

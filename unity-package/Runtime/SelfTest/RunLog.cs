@@ -17,7 +17,7 @@ namespace Mua.SelfTest
             Write(begin + OneLine(text));
         }
 
-        /// <summary>Where figures were taken; no answer.</summary>
+        /// <summary>Logs on which machine figures were taken; not an answer to mua-deploy.</summary>
         public static void SayDevice()
         {
             Write("MUA device: " + Device());

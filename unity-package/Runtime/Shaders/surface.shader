@@ -1,4 +1,4 @@
-// What is drawn of an avatar beside its splats: the surface through the splats' centres, the template mesh, the bones, and
+// What is drawn of an avatar beside its splats: the surface through the splats' centres, the template, the bones, and
 // the template in the maps of lights. surface_draw.hlsl of com.mua.kernels with the buffers that
 // Runtime/Kernels/SurfaceDraw.cs binds; the desktop player's surface.hlsl, template.hlsl and skeleton.hlsl draw the same.
 Shader "Hidden/MUA/Surface"
@@ -83,7 +83,7 @@ Shader "Hidden/MUA/Surface"
 
         Pass
         {
-            Name "Mesh"
+            Name "Template"
             ZTest LEqual
             ZWrite On
 

@@ -64,7 +64,7 @@ namespace Mua
             }
         }
 
-        /// <summary>Of a target's pixels that are drawn; for a headset, which has a scale of its own, as URP asks it.</summary>
+        /// <summary>Share of a target's pixels that are drawn; a headset has a scale of its own, which URP reads in the same way.</summary>
         private static Vector2 Scale(UniversalCameraData camera)
         {
             return camera.xr.enabled

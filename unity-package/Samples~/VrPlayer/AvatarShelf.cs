@@ -8,7 +8,7 @@ using UnityEngine.Networking;
 namespace Mua.Samples.VrPlayer
 {
     /// <summary>
-    /// The avatars that the player finds: files in the folder of avatars first, then those that came with the app, both by
+    /// The avatars that the player finds: files in the folder of avatars first, then files that came with the app, both by
     /// name, then those of the scene.
     /// </summary>
     internal sealed class AvatarShelf
@@ -25,10 +25,10 @@ namespace Mua.Samples.VrPlayer
 
         public int Count => entries.Count;
 
-        /// <summary>Index of the one that is shown.</summary>
+        /// <summary>Index of the avatar that is shown.</summary>
         public int Position { get; private set; }
 
-        /// <summary>The one that is shown, or null while there is none.</summary>
+        /// <summary>The avatar that is shown, or null while there is none.</summary>
         public AvatarEntry Current => entries.Count == 0 ? null : entries[Position];
 
         /// <summary>Looks everywhere; a coroutine, since inside an Android package a file has to be asked for.</summary>
@@ -57,7 +57,7 @@ namespace Mua.Samples.VrPlayer
             AddAssets(assets);
         }
 
-        /// <summary>Goes on by 1 or -1, from the last to the first, past those that cannot be shown.</summary>
+        /// <summary>Moves on by 1 or -1, round the ends, past avatars that cannot be shown.</summary>
         public void Step(int by)
         {
             for (int i = 0; i < entries.Count; i++)
@@ -70,7 +70,7 @@ namespace Mua.Samples.VrPlayer
             }
         }
 
-        /// <summary>Goes to the avatar of a name; whether there is one.</summary>
+        /// <summary>Moves to the avatar with this name; returns whether there is one.</summary>
         public bool Find(string name)
         {
             int found = entries.FindIndex(entry => entry.Name == name);
@@ -78,7 +78,7 @@ namespace Mua.Samples.VrPlayer
             return found >= 0;
         }
 
-        /// <summary>Gives up the present avatar and goes on to the next; whether there is one.</summary>
+        /// <summary>Marks the present avatar as failed and moves on; returns whether another one is left.</summary>
         public bool Skip()
         {
             Current.HasFailed = true;
@@ -130,7 +130,7 @@ namespace Mua.Samples.VrPlayer
     {
         public string Name { get; set; }
 
-        /// <summary>Of a file; null where Asset is set.</summary>
+        /// <summary>Path of the avatar's file; null where Asset is set.</summary>
         public string Path { get; set; }
 
         /// <summary>An imported avatar; null where Path is set.</summary>

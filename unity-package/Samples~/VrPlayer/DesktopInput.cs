@@ -15,7 +15,7 @@ namespace Mua.Samples.VrPlayer
     internal sealed class DesktopInput
     {
         private const float DegreesPerPixel = 0.15f;
-        private const float ZoomOfNotch = 8; // as many frames at full speed
+        private const float ZoomOfNotch = 8; // frames of zooming at full speed
 
         private static readonly KeyName[] Keys =
         {
@@ -28,11 +28,11 @@ namespace Mua.Samples.VrPlayer
 #endif
         };
 
-        private static readonly PlayerAction[] Actions = // of Keys
+        private static readonly PlayerAction[] Actions = // in the order of Keys
         {
             PlayerAction.PlayPause, PlayerAction.NextFrame, PlayerAction.PreviousFrame, PlayerAction.NextClip,
             PlayerAction.PreviousClip, PlayerAction.NextAvatar, PlayerAction.PreviousAvatar, PlayerAction.Reset,
-            PlayerAction.Help, PlayerAction.Splats, PlayerAction.Geometry, PlayerAction.Mesh, PlayerAction.Skeleton,
+            PlayerAction.Help, PlayerAction.Splats, PlayerAction.Geometry, PlayerAction.Template, PlayerAction.Skeleton,
             PlayerAction.Shadow,
         };
 
@@ -69,14 +69,14 @@ namespace Mua.Samples.VrPlayer
             return Keyboard.current != null && Keyboard.current[key].isPressed;
         }
 
-        /// <summary>Of the mouse wheel, whose unit differs between platforms.</summary>
+        /// <summary>Direction of the mouse wheel, 1, 0 or -1; its unit differs between platforms.</summary>
         private static float Notches()
         {
             float scroll = Mouse.current == null ? 0 : Mouse.current.scroll.ReadValue().y;
             return scroll > 0 ? 1 : scroll < 0 ? -1 : 0;
         }
 
-        /// <summary>Pixels of the mouse with its right button held.</summary>
+        /// <summary>Pixels that the mouse moved with its right button held.</summary>
         private static Vector2 Drag()
         {
             Mouse mouse = Mouse.current;
@@ -93,14 +93,14 @@ namespace Mua.Samples.VrPlayer
             return Input.GetKey(key);
         }
 
-        /// <summary>Of the mouse wheel, whose unit differs between platforms.</summary>
+        /// <summary>Direction of the mouse wheel, 1, 0 or -1; its unit differs between platforms.</summary>
         private static float Notches()
         {
             float scroll = Input.mouseScrollDelta.y;
             return scroll > 0 ? 1 : scroll < 0 ? -1 : 0;
         }
 
-        /// <summary>Pixels of the mouse with its right button held.</summary>
+        /// <summary>Pixels that the mouse moved with its right button held.</summary>
         private static Vector2 Drag()
         {
             return Input.GetMouseButton(1) ? (Vector2)Input.mousePositionDelta : Vector2.zero;

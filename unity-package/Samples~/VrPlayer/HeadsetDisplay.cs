@@ -26,10 +26,10 @@ namespace Mua.Samples.VrPlayer
             this.foveation = foveation;
         }
 
-        /// <summary>That the display was to have, Hz.</summary>
+        /// <summary>Refresh rate that was asked for, Hz.</summary>
         public float WantedRate { get; }
 
-        /// <summary>Of the display, Hz; NaN without a headset.</summary>
+        /// <summary>Refresh rate of the display, Hz; NaN without a headset.</summary>
         public double Rate
         {
             get
@@ -39,10 +39,10 @@ namespace Mua.Samples.VrPlayer
             }
         }
 
-        /// <summary>From 0 to 1; NaN without a headset.</summary>
+        /// <summary>Level of foveation, from 0 to 1; NaN without a headset.</summary>
         public double Foveation => display == null ? double.NaN : display.foveatedRenderingLevel;
 
-        /// <summary>Takes a headset that has come up since the last call, or drops one that went.</summary>
+        /// <summary>Notices a headset that was connected or disconnected since the last call.</summary>
         public void Refresh()
         {
             if (display != null && display.running)

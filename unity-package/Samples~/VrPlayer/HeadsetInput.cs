@@ -28,7 +28,7 @@ namespace Mua.Samples.VrPlayer
             Right(CommonUsages.secondaryButton, PlayerAction.NextClip, PlayerAction.Geometry),
             Right(CommonUsages.triggerButton, PlayerAction.NextFrame, PlayerAction.Shadow),
             Right(CommonUsages.primary2DAxisClick, PlayerAction.Reset, PlayerAction.Reset),
-            Left(CommonUsages.primaryButton, PlayerAction.PreviousAvatar, PlayerAction.Mesh),
+            Left(CommonUsages.primaryButton, PlayerAction.PreviousAvatar, PlayerAction.Template),
             Left(CommonUsages.secondaryButton, PlayerAction.NextAvatar, PlayerAction.Skeleton),
             Left(CommonUsages.triggerButton, PlayerAction.PreviousFrame, PlayerAction.PreviousClip),
             Left(CommonUsages.primary2DAxisClick, PlayerAction.Help, PlayerAction.Help),

@@ -2,7 +2,7 @@ using UnityEngine;
 
 namespace Mua.Samples.VrPlayer
 {
-    /// <summary>Does to user and avatar what the user asks for; which avatar is shown is the player's.</summary>
+    /// <summary>Moves user and avatar as the user asks; VrPlayer chooses which avatar is shown.</summary>
     internal sealed class PlayerControls
     {
         private const float TurnSpeed = 90; // degrees a second
@@ -12,7 +12,7 @@ namespace Mua.Samples.VrPlayer
         private readonly PlayerRig rig;
         private readonly HeadPose head;
         private readonly GameObject help;
-        private readonly Quaternion facing; // of the avatar in the beginning
+        private readonly Quaternion facing; // the avatar's initial rotation
 
         public PlayerControls(AvatarRenderer shown, PlayerRig rig, HeadPose head, GameObject help)
         {
@@ -23,7 +23,7 @@ namespace Mua.Samples.VrPlayer
             facing = shown.transform.rotation;
         }
 
-        /// <summary>A frame of so many seconds.</summary>
+        /// <summary>Applies the input of a frame that took so many seconds.</summary>
         public void Apply(in PlayerIntents intents, float seconds)
         {
             Press(intents.Pressed);
@@ -89,7 +89,7 @@ namespace Mua.Samples.VrPlayer
         {
             return (Has(pressed, PlayerAction.Splats) ? AvatarViews.Splats : 0)
                 | (Has(pressed, PlayerAction.Geometry) ? AvatarViews.Geometry : 0)
-                | (Has(pressed, PlayerAction.Mesh) ? AvatarViews.Mesh : 0)
+                | (Has(pressed, PlayerAction.Template) ? AvatarViews.Template : 0)
                 | (Has(pressed, PlayerAction.Skeleton) ? AvatarViews.Skeleton : 0)
                 | (Has(pressed, PlayerAction.Shadow) ? AvatarViews.Shadow : 0);
         }

@@ -17,11 +17,11 @@ namespace Mua.Samples.VrPlayer
         PreviousAvatar = 64,
         Splats = 128,
         Geometry = 256,
-        Mesh = 512,
+        Template = 512,
         Skeleton = 1024,
         Shadow = 2048,
 
-        /// <summary>User and avatar go back to where they began, at natural size.</summary>
+        /// <summary>Resets user and avatar to where they began, at natural size.</summary>
         Reset = 4096,
 
         /// <summary>Shows or hides the page of buttons.</summary>
@@ -36,22 +36,22 @@ namespace Mua.Samples.VrPlayer
         /// <summary>Buttons and keys that went down in this frame.</summary>
         public PlayerAction Pressed;
 
-        /// <summary>To the right and forward, of where the user looks.</summary>
+        /// <summary>Walk to the right and forward, relative to where the user looks.</summary>
         public Vector2 Walk;
 
-        /// <summary>Upwards.</summary>
+        /// <summary>Upward movement.</summary>
         public float Rise;
 
-        /// <summary>To the right and up, degrees of this frame.</summary>
+        /// <summary>Turn of the view to the right and up in this frame, degrees.</summary>
         public Vector2 Look;
 
-        /// <summary>Of the avatar, seen from above clockwise.</summary>
+        /// <summary>Turn of the avatar, clockwise seen from above.</summary>
         public float Turn;
 
-        /// <summary>Nearer, which shows it larger.</summary>
+        /// <summary>Zoom; positive shows the avatar larger.</summary>
         public float Zoom;
 
-        /// <summary>Through the clip, forwards.</summary>
+        /// <summary>Scrubbing through the clip, forward.</summary>
         public float Scrub;
     }
 }

@@ -11,7 +11,7 @@ namespace Mua.Samples.VrPlayer
     /// </summary>
     internal sealed class StageTimes : IDisposable
     {
-        private const int Frames = 32; // that are averaged
+        private const int Frames = 32; // averaged
         private const double NanosecondsOfMillisecond = 1e6;
 
         private static readonly string[] Stages = { "coarse mesh", "texture", "pose", "project", "sort", "draw" };
@@ -36,10 +36,10 @@ namespace Mua.Samples.VrPlayer
         /// <summary>Names of the stages, in the order of a frame.</summary>
         public IReadOnlyList<string> Names => Stages;
 
-        /// <summary>Whether Of gives GPU time; else it is what the CPU spends on a stage.</summary>
+        /// <summary>Whether Of returns GPU time; otherwise it returns CPU time.</summary>
         public bool IsOfGpu { get; }
 
-        /// <summary>Looks for the markers that there were not yet; they come with the first avatar.</summary>
+        /// <summary>Looks for markers that do not exist yet; they appear with the first avatar.</summary>
         public void Attach()
         {
             for (int i = 0; i < recorders.Length; i++)

@@ -9,7 +9,7 @@ namespace Mua.Samples.VrPlayer
         private const float Interval = 0.5f; // seconds between two texts
         private const int Columns = 56; // of a message
 
-        private static readonly string[] ViewNames = { "splats", "geometry", "mesh", "skeleton", "shadow" }; // by bit
+        private static readonly string[] ViewNames = { "splats", "geometry", "template", "skeleton", "shadow" }; // by bit
 
         private readonly TextMesh target;
         private readonly AvatarRenderer shown;
@@ -29,7 +29,7 @@ namespace Mua.Samples.VrPlayer
             this.display = display;
         }
 
-        /// <summary>A frame of so many seconds has passed; `message` is what the player has to say.</summary>
+        /// <summary>Counts a frame that took so many seconds; `message` is the player's own line.</summary>
         public void Count(float seconds, string message)
         {
             FrameTimingManager.CaptureFrameTimings();

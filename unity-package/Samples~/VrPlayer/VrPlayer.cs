@@ -33,7 +33,7 @@ namespace Mua.Samples.VrPlayer
         private StatusPanel status;
         private string message = "";
 
-        /// <summary>What the scene's builder has made.</summary>
+        /// <summary>Objects that PlayerScene made.</summary>
         internal void Connect(
             AvatarRenderer shown, HeadPose head, TextMesh panel, GameObject help, AvatarAsset[] avatars)
         {

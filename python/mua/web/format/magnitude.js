@@ -49,7 +49,8 @@ function checkTexture(branch, { recLo, recHi, levels }, inputs, path) {
   check(path, found);
 }
 
-const most = (/** @type {Float32Array} */ values) => values.reduce((found, value) => Math.max(found, Math.abs(value)), 0);
+const most = (/** @type {Float32Array} */ values) =>
+  values.reduce((found, value) => Math.max(found, Math.abs(value)), 0);
 
 function check(/** @type {string} */ path, /** @type {number} */ reached) {
   if (!(reached <= MAGNITUDE)) throw refuse(path, "the numbers that follow from it may exceed 4.6e+18");

@@ -4,7 +4,7 @@
 import { LARGEST_TAP, MAX_TAPS } from "./limits.js";
 import { general } from "./numbers.js";
 import { fault, refuse } from "./parser.js";
-import { realTensor, reals, someTensor } from "./tensors.js";
+import { reals, realTensor, someTensor } from "./tensors.js";
 
 /** @typedef {import("./parser.js").Tree} Tree */
 /** @typedef {import("./tensors.js").Stored} Stored */
@@ -20,7 +20,6 @@ import { realTensor, reals, someTensor } from "./tensors.js";
  * @property {number} channels
  * @property {number} rank of LL
  */
-
 
 /** @typedef {ReturnType<typeof readWavelet>} Wavelet */
 

@@ -82,7 +82,8 @@ async function inflate(
   }
   reader.cancel().catch(() => {}); // what is left of it does not matter
   if (got === count && whole) return;
-  if (got === count) throw fault("packed", `${path}.data`, "the stream does not end with its bytes: the file is damaged");
+  if (got === count)
+    throw fault("packed", `${path}.data`, "the stream does not end with its bytes: the file is damaged");
   const given = got > count ? `more than ${count}` : got;
   throw fault("packed", `${path}.data`, `the stream gives ${given} bytes, expected ${count}`);
 }

@@ -6,8 +6,8 @@ import { LARGEST_RATE, LEAST_RATE, LEAST_SCALE, MAX_ADDED, MAX_FRAMES, MAX_WINDO
 import { checkMagnitude } from "./magnitude.js";
 import { readBranch, readCoarse, readWavelet } from "./model.js";
 import { general, shortest } from "./numbers.js";
-import { fault, parse, refuse } from "./parser.js";
 import { unpack } from "./packing.js";
+import { fault, parse, refuse } from "./parser.js";
 import { besideRoot, readSkeleton, readSurface, readTemplate, readTexels, translated, unit } from "./rig.js";
 import { checkSizes } from "./sizes.js";
 import { leaveOut } from "./stages.js";
@@ -115,8 +115,7 @@ function readComponents(/** @type {Tree} */ tree, /** @type {number} */ width) {
   const [directions, count] = [expanded(stored), stored.shape[0]];
   const ranges = reals(tree.ranges, "encoding.ranges", [2, count]).values;
   const swapped = ranges.subarray(0, count).findIndex((low, k) => low > ranges[count + k]);
-  if (swapped >= 0)
-    throw refuse("encoding.ranges", `the lowest value of component ${swapped} is above its highest`);
+  if (swapped >= 0) throw refuse("encoding.ranges", `the lowest value of component ${swapped} is above its highest`);
   const margins = reals(tree.margins, "encoding.margins", [count]).values;
   const smallest = margins.reduce((a, b) => Math.min(a, b), 0);
   if (smallest < 0) throw refuse("encoding.margins", `${shortest(smallest)}, expected 0 or more`);

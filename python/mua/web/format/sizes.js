@@ -16,7 +16,6 @@ import { refuse } from "./parser.js";
 
 /** @typedef {import("./parser.js").Tree} Tree */
 
-
 export function checkSizes(/** @type {Tree} */ tree) {
   const { levels, rec_lo: taps } = tree.wavelet;
   const [geometry, appearance] = [tree.geometry.details.length, tree.appearance.details.length];
@@ -36,7 +35,8 @@ function checkTexture(/** @type {Tree} */ { size, texels }, /** @type {number} *
   const count = texels.shape[0] ?? 0;
   check("texels.size", size, 1, MAX_SIDE);
   if (size % 2 ** levels) throw refuse("texels.size", `${size} does not halve ${levels} times`);
-  if (size * size > TEXTURE_TIMES * count + TEXTURE_ROOM) throw refuse("texels.size", `${size}, too large for ${count} valid texels`);
+  if (size * size > TEXTURE_TIMES * count + TEXTURE_ROOM)
+    throw refuse("texels.size", `${size}, too large for ${count} valid texels`);
 }
 
 function check(

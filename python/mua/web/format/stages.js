@@ -68,7 +68,8 @@ export function leaveOut(tree, end) {
 
 const NO_BLOCKS = { blocks: new Uint8Array() };
 
-export const isThere = (/** @type {Tree} */ { data }, /** @type {number} */ end) => data.byteOffset + data.length <= end;
+export const isThere = (/** @type {Tree} */ { data }, /** @type {number} */ end) =>
+  data.byteOffset + data.length <= end;
 
 /** A tensor without elements. */
 function empty(/** @type {string} */ type, /** @type {number[]} */ ...shape) {

@@ -2,8 +2,8 @@
 // stays in its stored type. Reference: python/mua/asset/tensors.py.
 
 import { LARGEST, MAX_RANK } from "./limits.js";
-import { fault } from "./parser.js";
 import { general } from "./numbers.js";
+import { fault } from "./parser.js";
 
 /** @typedef {import("./parser.js").Tree} Tree */
 

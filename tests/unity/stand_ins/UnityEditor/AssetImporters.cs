@@ -1,4 +1,4 @@
-// Stand-in. Source: Unity 6000.0, facts 4.6; FileUtil.bindings.cs, ScriptedImporter.cs, AssetImportContext, AssetImporterEditor.cs.
+// Stand-in. Source: Unity 6000.0; FileUtil.bindings.cs, ScriptedImporter.cs, AssetImportContext, AssetImporterEditor.cs.
 using System;
 using System.Collections.Generic;
 using UnityEngine;

@@ -1,4 +1,4 @@
-// Stand-in. Source: facts 4.4, Unity 6000.0, Camera, GL; scripting reference, Mesh, Renderer, Animator.
+// Stand-in. Source: Unity 6000.0, Camera, GL; scripting reference, Mesh, Renderer, Animator.
 using System;
 using System.Collections.Generic;
 

@@ -1,4 +1,4 @@
-// Stand-in. Source: facts 4.3, Unity 6000.0, CommandBuffer: what it is told runs when it is executed.
+// Stand-in. Source: Unity 6000.0, CommandBuffer: its commands run when it is executed.
 using System;
 using System.Runtime.InteropServices;
 

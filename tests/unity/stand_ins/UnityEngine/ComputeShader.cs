@@ -1,4 +1,4 @@
-// Stand-in. Source: facts 4.1, Unity 6000.0, ComputeShader. Kernels and group sizes are read from the .compute file.
+// Stand-in. Source: Unity 6000.0, ComputeShader. Kernels and group sizes are read from the .compute file.
 using System;
 using System.Collections.Generic;
 using System.IO;

@@ -1,4 +1,4 @@
-// Stand-in. Source: Unity 6000.0 scripting reference, Debug, Application, Time, Screen, SystemInfo (facts 4.6), QualitySettings.
+// Stand-in. Source: Unity 6000.0 scripting reference, Debug, Application, Time, Screen, SystemInfo, QualitySettings.
 using System;
 using System.Collections.Generic;
 
@@ -159,7 +159,7 @@ namespace StandIns
 
     public static class Machine
     {
-        /// <summary>What the player was told to exit with; null while it runs on.</summary>
+        /// <summary>The exit code that the player was given; null while it runs on.</summary>
         public static int? ExitCode { get; internal set; }
 
         public static void Paths(string streamingAssets, string persistentData)

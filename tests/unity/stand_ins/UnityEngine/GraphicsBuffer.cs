@@ -1,4 +1,4 @@
-// Stand-in. Source: facts 4.2 and 2.4 (rules of the constructor), Unity 6000.0, GraphicsBuffer.
+// Stand-in. Source: Unity 6000.0, GraphicsBuffer.
 using System;
 using System.Collections.Generic;
 using System.Runtime.InteropServices;

@@ -1,4 +1,4 @@
-// Stand-in. Source: facts 4.5 and Unity 6000.0 reference source, RenderPipelineManager, ScriptableRenderContext,
+// Stand-in. Source: Unity 6000.0 reference source, RenderPipelineManager, ScriptableRenderContext,
 // RenderTextureDescriptor, ScalableBufferManager, GraphicsSettings.
 using System;
 using System.Collections.Generic;

@@ -103,6 +103,7 @@ namespace StandIns
         public static int Dispatches { get; private set; }
         public static int Draws { get; private set; }
         public static int Renders { get; private set; }
+        public static int Lookups { get; internal set; } // of ids by name
 
         /// <summary>What was last given to the lights.</summary>
         public static RenderParams LastRender { get; private set; }

@@ -16,6 +16,7 @@ namespace UnityEngine
         public static int PropertyToID(string name)
         {
             int id;
+            StandIns.Recorder.Lookups++;
             if (Ids.TryGetValue(name, out id))
                 return id;
             Names.Add(name);

@@ -1,4 +1,4 @@
-// Stand-in. Source: facts 4.6, Unity 6000.0 scripting reference, UnityWebRequest. It reads files; a frame passes first.
+// Stand-in. Source: Unity 6000.0 scripting reference, UnityWebRequest. It reads files; a frame passes first.
 using System;
 using System.IO;
 

@@ -28,7 +28,7 @@ namespace Mua.Samples.VrPlayer.Editor
             + "right, left trigger   next, previous frame\n"
             + "Y, X   next, previous avatar\n"
             + "left grip + A B X Y right trigger\n"
-            + "     splats geometry mesh skeleton shadow\n"
+            + "     splats geometry template skeleton shadow\n"
             + "left grip + left trigger   previous clip\n"
             + "right stick pressed   back to the start\n"
             + "menu, left stick pressed   hide this\n\n"
@@ -38,7 +38,7 @@ namespace Mua.Samples.VrPlayer.Editor
             + "Q E   turn        wheel, up, down   zoom\n"
             + "left, right   scrub        space   play, pause\n"
             + ". ,   frame     ] [   clip     page down, up   avatar\n"
-            + "1 2 3 4 5   splats geometry mesh skeleton shadow\n"
+            + "1 2 3 4 5   splats geometry template skeleton shadow\n"
             + "backspace   back to the start     H   hide this";
 
         private static readonly Color Background = new Color(0.16f, 0.17f, 0.19f);
@@ -88,7 +88,7 @@ namespace Mua.Samples.VrPlayer.Editor
             ground.GetComponent<MeshRenderer>().sharedMaterial = material;
         }
 
-        /// <summary>It faces the user.</summary>
+        /// <summary>The avatar faces the user.</summary>
         private static AvatarRenderer AddAvatar()
         {
             var avatar = new GameObject("Avatar").AddComponent<AvatarRenderer>();
