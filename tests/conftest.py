@@ -124,7 +124,7 @@ def trained(written: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="session")
 def smooth_recording(tmp_path_factory: pytest.TempPathFactory) -> "Recording":
-    """A smooth teacher's frames, in which every compared system finds something to learn."""
+    """A smooth teacher's frames, which every compared system can fit."""
     import compared  # here, because few tests need torch
 
     return compared.smooth_recording(tmp_path_factory.mktemp("smooth"))
@@ -140,7 +140,7 @@ def smooth_frames(smooth_recording: "Recording") -> "TrainingFrames":
 
 @pytest.fixture(scope="session")
 def device() -> Iterator["Device"]:
-    """What shaders run on: $MUA_DEVICE as for `open_device`, else the best there is."""
+    """The device for shaders: $MUA_DEVICE as for `open_device`, else the best one."""
     from mua.gpu import open_device  # here, because few tests need wgpu
 
     opened = open_device(os.environ.get("MUA_DEVICE"))

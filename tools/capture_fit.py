@@ -12,7 +12,7 @@ from mua.fidelity.canvas import opened
 from mua.fidelity.painter import Painter
 from mua.scene import Material, Part
 
-FRAMES = 3  # of each clip that are compared: first, middle and last
+FRAMES = 3  # compared frames of each clip: first, middle and last
 
 
 @dataclass(frozen=True)

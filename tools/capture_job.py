@@ -33,12 +33,12 @@ IMAGES, MESHES = "images/{clip}/{camera}/{frame:06d}.png", "meshes/{clip}/{frame
 TRACKS, TRACKED = "tracks/{clip}.npz", 1000  # points all over the surface that are followed
 ONE_FILE = (".glb", ".vrm", ".usdc", ".usdz")  # kinds of characters that can be copied
 LIGHTS = {"studio": "three soft lamps", "sun": "the sun from one side and a blue sky"}
-CORNERS = np.dtype([("count", "u1"), ("vertices", "<i4", 3)])  # of a face of a .ply
+CORNERS = np.dtype([("count", "u1"), ("vertices", "<i4", 3)])  # layout of a face of a .ply
 
 
 @dataclass(frozen=True)
 class Order:
-    """What was asked for; a folder holds the capture of one order."""
+    """The settings of a capture; a folder holds the capture of one order."""
 
     character: str
     motion: tuple[str, ...]
@@ -66,7 +66,7 @@ class Filmed:
 
 
 def job_file(folder: Path) -> Path:
-    """What the renderer of a capture is given; it is there once all but the images is."""
+    """The renderer's job file; it is written after everything but the images."""
     return folder / "render" / "job.json"
 
 

@@ -22,13 +22,13 @@ from engine_use import CSharp, Used, engine_symbols, named, used_members
 from package_compiler import ENGINES
 from rich.console import Console
 
-YEARS = range(2017, 2024)  # of engines before 6000
+YEARS = range(2017, 2024)  # versions of engines before 6000
 SYMBOLS = ("UNITY_EDITOR", "ENABLE_VR", "ENABLE_VR_MODULE", "ENABLE_XR_MODULE", "ENABLE_INPUT_SYSTEM")
 
 
 @dataclass(frozen=True)
 class Found:
-    """What came of one member."""
+    """The result for one member."""
 
     used: Used
     outcome: str  # same, deprecated, different, absent, unknown
@@ -122,7 +122,7 @@ def _is_same(member: Member, used: Used) -> bool:
 
 
 def _takes(theirs: str, ours: str) -> bool:
-    """The same type, passed alike; what a call leaves out here may be left out there. mcs compiles `in` as nothing."""
+    """Whether types and passing agree, and arguments left out here are optional. mcs compiles `in` as nothing."""
     theirs = theirs.removeprefix("in ")
     return theirs.removesuffix(" =") == ours.removesuffix(" =") and (theirs.endswith(" =") or not ours.endswith(" ="))
 

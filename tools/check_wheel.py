@@ -20,7 +20,7 @@ from pathlib import Path
 from rich.console import Console
 
 ROOT = Path(__file__).resolve().parents[1]
-TORCH = "torch==2.13.0"  # the build for the CPU, where pip is told where to find it
+TORCH = "torch==2.13.0"  # the build for the CPU, from an index of its own
 SENTENCE = "which is not here: pip install"
 AVATAR, SMALL = "a.muaavatar", ("--size", "128")
 BAKE = ("mua-bake", "--preset", "tiny", "--frames", "24", "-o", AVATAR)
@@ -38,7 +38,7 @@ class Run:
 
 @dataclass(frozen=True)
 class Step:
-    """What is installed, and what then runs."""
+    """The packages to install, and the commands to run then."""
 
     name: str
     packages: tuple[str, ...]  # for pip; {wheel} stands for the wheel
@@ -112,7 +112,7 @@ STEPS = (
 
 def build(folder: Path) -> Path:
     """The wheel of this checkout."""
-    shutil.rmtree(ROOT / "python" / "build", ignore_errors=True)  # what an older checkout had would go in too
+    shutil.rmtree(ROOT / "python" / "build", ignore_errors=True)  # leftovers of an older checkout would go in too
     command = [sys.executable, "-m", "pip", "wheel", "-q", "--no-deps", "-w", str(folder), str(ROOT / "python")]
     subprocess.run(command, check=True)
     (wheel,) = folder.glob("mua-*.whl")

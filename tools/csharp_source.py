@@ -40,7 +40,7 @@ class Member:
     closed: frozenset[str] = frozenset()  # accessors that are neither
     obsolete: str = ""  # "", "warning" or "error"
     failing: frozenset[str] = frozenset()  # accessors that are an error to use
-    number: str = ""  # of an enum member or a constant, as it is written
+    number: str = ""  # value of an enum member or a constant, as written
 
 
 @dataclass
@@ -98,11 +98,11 @@ def holds(condition: str, symbols: Collection[str]) -> bool:
     words = re.findall(r"\w+|&&|\|\||==|!=|[!()]", condition.partition("//")[0])
     signs = {"&&": " and ", "||": " or ", "!": " not ", "true": "True", "false": "False"}
     python = "".join(signs.get(word) or (str(word in symbols) if re.match(r"\w", word) else word) for word in words)
-    return bool(eval(python, {"__builtins__": {}}))  # of True, False, and, or, not, == and brackets alone
+    return bool(eval(python, {"__builtins__": {}}))  # only True, False, and, or, not, == and brackets
 
 
 def _space(node: Node, prefix: str, names: dict[str, str], found: dict[str, Declared]) -> None:
-    """What stands in a file or in a namespace."""
+    """The declarations of a file or a namespace."""
     for child in node.named_children:
         if child.type == "using_directive" and (name := child.child_by_field_name("name")):
             names = {**names, _text(name): spell(child.named_children[-1], {})}

@@ -20,13 +20,13 @@ import numpy as np
 from mathutils import Matrix, Vector
 
 SENSOR = 36.0  # millimetres that lenses are measured against; any number does
-SKY = 0.55  # of light from all around
+SKY = 0.55  # strength of the light from all around
 LAMPS = (  # direction to the lamp, strength beside the sky: a soft key from the left, a fill, a rim from behind
     ((-0.7, 0.75, 0.8), 0.9),
     ((0.95, 0.25, 0.55), 0.35),
     ((0.25, 0.6, -1.0), 0.5),
 )
-LAMP_DISTANCE, LAMP_SIDE = 2.5, 1.6  # of the figure's size
+LAMP_DISTANCE, LAMP_SIDE = 2.5, 1.6  # times the figure's size
 OPEN_SKY = (0.16, 0.21, 0.3)  # light from all around in the sun: red, green, blue
 SUN = ((-0.65, 0.75, 0.35), (1.0, 0.93, 0.82), 2.6)  # direction to it, colour, irradiance
 SUN_DEGREES = 0.53  # across
@@ -63,7 +63,7 @@ def _scene(job: dict[str, Any], threads: int) -> Any:
     scene.cycles.device = "CPU"
     scene.cycles.samples = job["samples"]
     scene.cycles.use_adaptive_sampling = False
-    scene.cycles.use_denoising = not job["unlit"]  # which has no noise
+    scene.cycles.use_denoising = not job["unlit"]  # this pass has no noise
     scene.cycles.pixel_filter_type = "BOX"  # a pixel is the mean of what falls on it, as on a sensor
     scene.cycles.filter_width = 1.0
     scene.render.use_persistent_data = True

@@ -1,6 +1,6 @@
-"""What the Unity package uses of the engine and of other packages, by its assemblies.
+"""The members of the engine and of other packages that the Unity package's assemblies use.
 
-They are compiled against the tests' stand-ins, which have what is used and not more.
+They are compiled against the tests' stand-ins, which declare exactly what is used.
 """
 
 import shutil
@@ -39,7 +39,7 @@ class Used:
 
 
 def used_members(csharp: CSharp, engine: str) -> list[Used]:
-    """What the package's assemblies use of the stand-ins, on every platform."""
+    """The members of the stand-ins that the package's assemblies use, on every platform."""
     lister = csharp.build([LISTER])
     lines: set[str] = set()
     for platform in PLAYERS:

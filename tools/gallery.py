@@ -30,7 +30,7 @@ TEXELS, FRAMES = 384, 120
 GOOD_IOU, GOOD_PSNR = 0.97, 30.0
 SECONDS = 3600  # after which a run is ended
 STRIP = (1152, 534)  # width and height of one view in the image of a check, pixels
-VIEWS = (3, 4)  # of each character: three quarters of its own pose, and the first frame of its motion
+VIEWS = (3, 4)  # views of each character: three quarters of its own pose, and the first frame of its motion
 HEADINGS = ("character", "motion", "overlap", "inside", "limbs", "facing", "explained", "size", "seconds", "memory")
 
 
@@ -110,7 +110,7 @@ def look_at(entry: Entry, folder: Path, out: Path, *, bake: bool) -> dict[str, A
 
 
 def checked(figures: dict[str, Any]) -> dict[str, Any]:
-    """What of a check's figures goes into the table."""
+    """The figures of a check for the table."""
     fidelity, motion = figures["fidelity"] or {}, figures["motion"]
     facing = [m["facing_degrees"] for m in motion if m["facing_degrees"] is not None]
     return {
@@ -137,18 +137,18 @@ def good(row: dict[str, Any]) -> bool:
 
 
 def table(entries: Iterable[Entry], rows: Iterable[dict[str, Any]]) -> str:
-    """Markdown: a line for each entry, and below it what is to be said of those that fall short."""
+    """Markdown: a line for each entry, and below it notes on those that fall short."""
     lines = ["| " + " | ".join(HEADINGS) + " |", "|" + " --- |" * len(HEADINGS)]
-    told = []
+    notes = []
     pairs = list(zip(entries, rows, strict=True))
     for entry, row in pairs:
         lines.append("| " + " | ".join(_cells(entry, row)) + " |")
         if not good(row):
             said = [row.get("failed", ""), entry.expected, *row.get("warnings", [])[:2]]
-            told.append(f"- {entry.name}: {' '.join(sentence for sentence in said if sentence)}")
+            notes.append(f"- {entry.name}: {' '.join(sentence for sentence in said if sentence)}")
     count = sum(good(row) for _, row in pairs)
     ending = f"{count} of {len(pairs)} reach {GOOD_IOU:.2f} and {GOOD_PSNR:.0f} dB in every pose."
-    return "\n".join([*lines, "", ending, "", *told, ""])
+    return "\n".join([*lines, "", ending, "", *notes, ""])
 
 
 def _cells(entry: Entry, row: dict[str, Any]) -> list[str]:

@@ -112,7 +112,7 @@ namespace Mua.Format
 
 
 def generate_csharp() -> str:
-    """The same data for the C# reader; a table stands after those that it points to."""
+    """The layouts for the C# reader; a table follows the tables it points to."""
     identifier, enums, tables, root = parse(SCHEMA.read_text())
     lines = [f'public const string Identifier = "{identifier}";', ""]
     for name, values in enums.items():
@@ -155,7 +155,7 @@ export const TABLES = {{
 
 
 def generate_javascript() -> str:
-    """The same data for the browser player's reader."""
+    """The layouts for the browser player's reader."""
     identifier, enums, tables, root = parse(SCHEMA.read_text())
     listed = [f"  {name}: [\n{fields_javascript(fields)}  ]," for name, fields in tables.items()]
     return JAVASCRIPT.format(identifier=identifier, root=root, enums=json.dumps(enums), tables="\n".join(listed))

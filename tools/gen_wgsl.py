@@ -85,7 +85,7 @@ def interface_of(described: dict[str, Any]) -> Interface:
 
 
 def faults(folder: Path) -> list[str]:
-    """What in the folder is out of date, a line each."""
+    """Files of the folder that are out of date, a line each."""
     index, wanted = read_index(folder), sources()
     made_from, there = index["made from"], {path.name for path in folder.glob("*.js")}
     found = [f"{name} was made from another text" for name in wanted if made_from.get(name) != wanted[name]]

@@ -17,7 +17,7 @@ from upm_package import Package
 
 
 def faults(folders: Sequence[Path]) -> list[str]:
-    """What is wrong with packages that belong together, one sentence each: file, field, value, what was expected."""
+    """Faults of packages that belong together, one sentence each: file, field, value and what was expected."""
     packages = [Package(folder) for folder in folders]
     versions = {package.name: str(package.manifest.get("version")) for package in packages}
     found = [*upm_assets.guid_faults(packages), *upm_assets.reference_faults(packages)]

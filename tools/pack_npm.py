@@ -46,11 +46,11 @@ declare module "react" {
   }
 }
 """
-ENTRIES = ("player.js", "element.js")  # what others import
+ENTRIES = ("player.js", "element.js")  # the modules that users import
 
 
 def lacking() -> str | None:
-    """What would have to be installed first; None where nothing is missing."""
+    """The program to install first; None where nothing is missing."""
     if shutil.which("npm") is None:
         return "needs Node and npm"
     if not TSC.is_file():
@@ -63,7 +63,7 @@ def write_types(folder: Path) -> None:
     settings = json.loads((TESTS / "tsconfig.json").read_text())
     options = settings["compilerOptions"] | {"noEmit": False, "declaration": True, "emitDeclarationOnly": True}
     options |= {"outDir": "types", "rootDir": "."}
-    known = [str(path) for path in TESTS.glob("*.d.ts")]  # of what lib.dom does not have yet
+    known = [str(path) for path in TESTS.glob("*.d.ts")]  # types that lib.dom lacks
     written = folder / "tsconfig.json"
     written.write_text(json.dumps({"compilerOptions": options, "files": [*ENTRIES, "worker.js", *known]}))
     subprocess.run(["node", str(TSC), "-p", str(written)], check=True, stdout=sys.stderr)

@@ -31,7 +31,7 @@ GOLDEN = (ROOT / "tests" / "parity" / "golden", ROOT / "tests" / "golden")
 TESTS = "Tests"
 GOLDEN_IN_PACKAGE = f"{TESTS}/Golden~"  # where Runtime/SelfTest/GoldenFolder.cs looks first
 
-PREFIX = "package/"  # that of npm's tarballs
+PREFIX = "package/"  # the root folder of npm's tarballs
 FOLDER = KERNELS.name
 NAME = "com.mua.avatar"
 SEPARATE, TOGETHER = f"Packages/{FOLDED[FOLDER]}/", f"Packages/{NAME}/{FOLDER}/"
@@ -87,7 +87,7 @@ def pack(files: Mapping[str, bytes]) -> bytes:
 
 
 def faults(tarball: bytes, source: str) -> list[str]:
-    """What is wrong with a tarball, one sentence each; `source` names it."""
+    """Faults of a tarball, one sentence each; `source` names it."""
     try:
         with tarfile.open(fileobj=io.BytesIO(tarball), mode="r:gz") as archive:
             found = list(_member_faults(archive.getmembers()))
@@ -160,7 +160,7 @@ def write_folder(files: Mapping[str, bytes], folder: Path) -> None:
 
 
 def default_output() -> Path:
-    """Where the tarball goes, named by its version."""
+    """The tarball's path, named by its version."""
     version = json.loads((PACKAGE / "package.json").read_text())["version"]
     return ROOT / "build" / f"{NAME}-{version}.tgz"
 

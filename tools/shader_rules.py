@@ -35,7 +35,7 @@ BARRIER = re.compile(r"\b(?:Group|Device|All)MemoryBarrier\w*")
 
 
 def kernel_faults(shader: Shader) -> list[str]:
-    """What breaks the rules in a .compute file, one sentence each."""
+    """Broken rules in a .compute file, one sentence each."""
     return [*file_faults(shader.path), *_declaration_faults(shader), *_unused(shader), *_entry_faults(shader)]
 
 
@@ -51,7 +51,7 @@ def file_faults(path: Path) -> list[str]:
 
 
 def package_faults(kernels: list[Shader], draws: list[tuple[Shader, list[str]]], root: Path) -> list[str]:
-    """What breaks the rules between files: a name of two types, a function that nothing calls, no reference, no test.
+    """Broken rules between files: a name of two types, a function that nothing calls, no reference, no test.
 
     `draws` are the shaders that draw, with their entry points.
     """

@@ -179,7 +179,7 @@ def accesses(body: str, buffer: str) -> list[tuple[str, str]]:
 
 
 def closing(text: str, at: int) -> int:
-    """Where the bracket that opens at a place of a text is closed."""
+    """The place where the bracket that opens at a place of a text is closed."""
     depth = 0
     for end in range(at, len(text)):
         depth += (text[end] in "([{") - (text[end] in ")]}")
@@ -189,7 +189,7 @@ def closing(text: str, at: int) -> int:
 
 
 def _index(body: str, at: int) -> tuple[str, str]:
-    """What stands in the `[...]` at a place of a text, and what follows it."""
+    """The content of the `[...]` at a place of a text, and the text after it."""
     blank = len(body[at:]) - len(body[at:].lstrip())
     if body[at + blank : at + blank + 1] != "[":
         return "", body[at:]

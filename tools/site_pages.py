@@ -19,7 +19,7 @@ LINK = re.compile(r"(!?\[[^\]]*\]\()([^)\s#]+)")
 STYLE, SEARCH = "tools/site.css", "tools/site_search.js"
 FOREIGN = re.compile(
     r'<script src="https://[^"]*/iframe-worker/[^"]*"></script>'
-)  # of the theme, for search from the disk
+)  # a script of the theme, for search from the disk
 GUIDES, FORMAT, REFERENCE = "docs", "schemas/README.md", "docs/reference.md"
 GIVEN = (  # records that public functions take or give
     "mua.rig.rig.Rig",
@@ -83,7 +83,7 @@ def on_post_template(output: str, template_name: str, config: MkDocsConfig) -> s
 
 
 def _place(page: str) -> str:
-    """What the sidebar calls a page that builders read: its folder or file, because titles repeat."""
+    """The sidebar's name of a page for developers: its folder or file, because titles repeat."""
     return page.removesuffix(".md").removesuffix("/README")
 
 

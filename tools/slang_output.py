@@ -1,4 +1,4 @@
-"""What slangc's SPIR-V needs so that wgpu takes it, and takes it as it is meant."""
+"""Changes slangc's SPIR-V so that wgpu accepts it and keeps its meaning."""
 
 import numpy as np
 
@@ -17,7 +17,7 @@ LONE_SWITCH_WORDS = 3  # opcode, selector, default
 
 
 def without_lone_switches(code: bytes) -> bytes:
-    """The same code with every switch that has a default and no case replaced by a branch.
+    """The code with every switch that has a default and no case replaced by a branch.
 
     slangc wraps the body of a loop in one; wgpu takes the loop's end, a branch out of both, for one out of the switch.
     """

@@ -1,4 +1,4 @@
-"""Rules for what lies in a UPM package, as faults: paths, .meta files, references by GUID and includes of shaders."""
+"""Rules for the files of a UPM package, as faults: paths, .meta files, references by GUID and includes of shaders."""
 
 import re
 from collections.abc import Iterator, Sequence

@@ -12,7 +12,7 @@ VERSION = re.compile(r"\d+\.\d+\.\d+(-[0-9A-Za-z.-]+)?")
 LONGEST_NAME = 214
 GONE = {"com.unity.modules.vr": "6000.5"}  # Unity's own packages that newer editors lack
 PAGES = ("README.md",)
-PAGES_OF_SCRIPTS = ("CHANGELOG.md", "LICENSE.md")  # of a package that people install for itself
+PAGES_OF_SCRIPTS = ("CHANGELOG.md", "LICENSE.md")  # of a package that people install on its own
 
 
 def _is_text(value: Any) -> bool:
@@ -58,7 +58,7 @@ REQUIRED = ("name", "version", "displayName", "description", "unity", "license")
 
 
 def faults(package: Package, siblings: dict[str, str]) -> Iterator[str]:
-    """What is wrong with a manifest; `siblings` are names and versions of all the packages of this repository."""
+    """Faults of a manifest; `siblings` are names and versions of all the packages of this repository."""
     where = f"{package.name}/package.json"
     try:
         read = json.loads((package.root / "package.json").read_text(encoding="utf-8"))

@@ -26,7 +26,7 @@ class Package:
 
     @cached_property
     def manifest(self) -> dict[str, Any]:
-        """package.json; empty where it is not there or is no object, which `upm_manifest` tells."""
+        """package.json; empty where it is not there or is no object, which `upm_manifest` reports."""
         try:
             read = json.loads((self.root / "package.json").read_text(encoding="utf-8"))
         except (OSError, ValueError):
@@ -35,11 +35,11 @@ class Package:
 
     @property
     def name(self) -> str:
-        """As package.json gives it; the folder's where it does not."""
+        """The name in package.json, else the folder's."""
         return str(self.manifest.get("name") or self.root.name)
 
     def where(self, path: PurePosixPath) -> str:
-        """How a fault names a file."""
+        """A file's name in faults."""
         return f"{self.name}/{path}"
 
     def is_folder(self, path: PurePosixPath) -> bool:
@@ -101,7 +101,7 @@ class Assembly:
 
     @property
     def symbols(self) -> set[str]:
-        """What its version defines may define."""
+        """Symbols that its version defines may define."""
         return {str(rule.get("define")) for rule in self.items("versionDefines") if isinstance(rule, dict)}
 
 

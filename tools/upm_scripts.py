@@ -7,7 +7,7 @@ from pathlib import PurePosixPath
 from upm_package import Assembly, Package
 
 SYMBOL = re.compile(r"[A-Za-z_]\w*")
-# What Unity 6 may define; a symbol that nobody defines hides code for ever.
+# Symbols that Unity 6 may define; one that nothing defines hides code for ever.
 SYMBOLS = {
     "DEBUG", "DEVELOPMENT_BUILD", "ENABLE_IL2CPP", "ENABLE_INPUT_SYSTEM", "ENABLE_LEGACY_INPUT_MANAGER", "ENABLE_MONO",
     "ENABLE_PROFILER", "ENABLE_VR", "TRACE", "UNITY_64", "UNITY_ANDROID", "UNITY_ASSERTIONS", "UNITY_EDITOR",

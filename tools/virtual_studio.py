@@ -1,4 +1,4 @@
-"""What a virtual capture films: which frames of a motion, on the spot, with which cameras."""
+"""The plan of a virtual capture: the frames of a motion, kept on the spot, and the cameras."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -15,9 +15,9 @@ RUN = 20  # frames in a row, at most: a teacher sees motion, not single poses
 GAP = 15  # frames between training and held-out ones of one clip, so that they are not the same pose
 SWAY = 0.5  # seconds: slower ways of the hips through the world are taken out
 LOW, HIGH, BETWEEN = np.radians([3.0, 25.0, 14.0])  # elevations of the two rings, and of held-out cameras
-JITTER = 0.1  # of the angle between two cameras
-DISTANCE = 3.0  # of the figure's size
-FILL = 0.94  # of the image's half size, that the figure reaches
+JITTER = 0.1  # share of the angle between two cameras
+DISTANCE = 3.0  # times the figure's size
+FILL = 0.94  # share of the image's half size that the figure reaches
 
 
 @dataclass(frozen=True)
@@ -41,12 +41,12 @@ def chosen_runs(stretches: Sequence[Run], frames: int) -> list[Run]:
 
 
 def held_back(
-    lengths: Sequence[int],  # of all clips
+    lengths: Sequence[int],  # frames of all clips
     *,
     named: int,  # how many of the last ones are held out by name
     frames: int,  # to be held out
 ) -> tuple[list[Run], list[Run]]:
-    """What is filmed for training and what is held out: the named clips, else the last, else the only one's end."""
+    """Frames filmed for training and frames held out: the named clips, else the last, else the only one's end."""
     whole = [Run(i, 0, length) for i, length in enumerate(lengths)]
     if not frames:
         return whole[: len(whole) - named], []
@@ -83,7 +83,7 @@ def ring(
     *,
     cameras: int,
     held_out: int,
-    size: int,  # of the square images, pixels
+    size: int,  # side of the square images, pixels
     rng: np.random.Generator,
 ) -> tuple[CaptureCamera, ...]:
     """Cameras about the points at two heights in turn, and held-out ones between them, all with one lens."""

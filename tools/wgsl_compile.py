@@ -16,13 +16,13 @@ from mua.gpu.reflect import BufferSlot, Constant, Interface
 
 SCALARS = {"uint32": "uint", "int32": "int", "float32": "float"}
 COLUMN, COMPONENT = 16, 4  # bytes between the columns of a matrix, and between the numbers of one
-LONE_INTERPOLATION = re.compile(r"@interpolate\(\w+\) +(?!@location)")  # of a struct that is no input: naga refuses it
+LONE_INTERPOLATION = re.compile(r"@interpolate\(\w+\) +(?!@location)")  # on a struct that is no input: naga refuses it
 OPTIONS = ["-target", "wgsl", "-O0", "-matrix-layout-column-major", "-warnings-disable", UNKNOWN_PRAGMA]
 
 
 @dataclass(frozen=True)
 class Shader:
-    """What a browser is given of one entry point; a fragment's resources lie in group 1, all others in group 0."""
+    """One entry point for browsers; a fragment's resources lie in group 1, all others in group 0."""
 
     entry: str
     stage: str

@@ -7,7 +7,7 @@ COUNTED = re.compile(r"\bInterlocked\w+\(\s*(\w+)")
 
 
 def with_atomics(text: str) -> str:
-    """The same file with everything that an Interlocked call changes declared, read and written as an Atomic."""
+    """The file with everything that an Interlocked call changes declared, read and written as an Atomic."""
     for name in sorted(set(COUNTED.findall(text))):
         place = rf"\b{name}{INDEX}"
         text = re.sub(rf"\bInterlocked(\w+)\(\s*({place}),(.*?)\);", _call, text)

@@ -31,7 +31,7 @@ def as_paths(paths: PathLike | Sequence[PathLike], name: str) -> tuple[Path, ...
 
 
 def as_names(names: str | Sequence[str], name: str) -> tuple[str, ...]:
-    """One name or several; raises InputError for anything but texts."""
+    """One name or several; raises InputError for anything but strings."""
     given = (names,) if isinstance(names, str) else names
     if not isinstance(given, Sequence) or not all(isinstance(one, str) for one in given):
         raise InputError(f"{name} is {describe(names)}; expected a name or a list of names")
@@ -47,7 +47,7 @@ def one_of(value: T, name: str, choices: Iterable[T]) -> T:
 
 
 def whole_number(value: Any, name: str) -> int:
-    """An integer of Python or numpy; raises InputError for anything else, True and False among it."""
+    """An integer of Python or numpy; raises InputError for anything else, also for True and False."""
     try:
         if not isinstance(value, bool | np.bool_):
             return operator.index(value)

@@ -1,4 +1,4 @@
-"""Which optional packages of the installation each command, or function of the same name, needs."""
+"""Which optional packages each command, and the function of the same name, needs."""
 
 import sys
 from collections.abc import Iterator
@@ -12,7 +12,7 @@ from mua.errors import InputError
 READING = ("DracoPy", "meshoptimizer", "pygltflib", "pywt", "scipy", "xatlas")
 TRAINING = ("meshoptimizer", "moderngl", "pywt", "scipy", "torch", "trimesh", "warp", "xatlas")
 VIEWING = (*READING, "glfw", "imageio_ffmpeg", "imgui_bundle", "rendercanvas", "wgpu")
-EXTRAS = {  # the smaller ones first: of several that bring a package the first is proposed
+EXTRAS = {  # the smaller ones first: the first that brings a package is proposed
     "view": frozenset(VIEWING),
     "export": frozenset((*READING, "pxr")),
     "train": frozenset(TRAINING),
@@ -21,7 +21,7 @@ EXTRAS = {  # the smaller ones first: of several that bring a package the first 
     "eval": frozenset((*VIEWING, *TRAINING, "flip_evaluator", "matplotlib", "torchmetrics")),
     "deploy": frozenset(("adbutils",)),
 }
-OF_COMMAND = {  # where the extra is not called as the command or the function
+OF_COMMAND = {  # where the extra's name differs from that of the command or function
     "mua-bench": "view",
     "mua-capture": "view",
     "mua-share": "view",

@@ -1,4 +1,4 @@
-"""What a scene file holds of a character, before it becomes one surface on rigid joints; the readers fill it."""
+"""A character as in its scene file, before it becomes one surface on rigid joints; filled by the readers."""
 
 import difflib
 from collections.abc import Iterator, Mapping, Sequence
@@ -68,7 +68,7 @@ class Part:
     skin: int
     joints: Array  # [N, K] int into the skin's joints
     weights: Array  # [N, K] float64, any scale
-    node: str = ""  # what the file calls the object that the mesh belongs to
+    node: str = ""  # the file's name of the object that the mesh belongs to
     colors: Array | None = None  # [F, 3, 4] linear colour and opacity of the corners, multiplied into the material
 
 
@@ -83,7 +83,7 @@ class Motion:
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """Nodes in parent-before-child order with their rest pose, and all that hangs on them; metres, Y up."""
+    """Nodes in parent-before-child order with their rest pose, and their skins and parts; metres, Y up."""
 
     name: str
     node_names: tuple[str, ...]
@@ -94,7 +94,7 @@ class Scene:
     materials: tuple[Material, ...]
     motions: tuple[Motion, ...]
     notes: tuple[str, ...]
-    roles: Mapping[int, str] = field(default_factory=dict)  # node to body part, where the file itself says it
+    roles: Mapping[int, str] = field(default_factory=dict)  # node to body part, where the file states it
 
     def upwards(self, node: int) -> Iterator[int]:
         """The node, its parent, and so on to the top."""
@@ -120,7 +120,7 @@ class Source:
 def without(scene: Scene, names: Sequence[str], path: Path) -> Scene:
     """The scene less the parts whose mesh, node or material has one of `names`, upper or lower case.
 
-    Raises an InputError that names `path` and the nearest names there are, where nothing is called so.
+    Raises an InputError that names `path` and the nearest names there are, where none has that name.
     """
     called = [(part.name, part.node, scene.materials[part.material].name) for part in scene.parts]
     known = dict.fromkeys(name for row in called for name in row if name)

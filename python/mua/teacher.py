@@ -15,7 +15,7 @@ class Light:
     """Light that a surface sends out, by vertex, in world space."""
 
     gain: Array  # [V, 3 rgb] display value over albedo
-    sheen: Array  # [V, 3 xyz] change of display value with the unit direction from camera to surface
+    sheen: Array  # [V, 3 xyz] gradient of the display value over the unit direction from camera to surface
 
 
 @dataclass(frozen=True, eq=False)

@@ -28,7 +28,7 @@ class Bands(NamedTuple):
     d2: Tensor  # [F, 3, C, 2n, 2n]
 
     def of(self, channels: slice) -> "Bands":
-        """The subbands of some of the channels."""
+        """Subbands of some of the channels."""
         return Bands(self.ll[:, channels], self.d3[:, :, channels], self.d2[:, :, channels])
 
 

@@ -30,7 +30,7 @@ def block(avatar: Avatar, members: list[int]) -> Avatar:
 
 
 def block_numbers(texels: TexelMap) -> Array:
-    """Of the block [N] in which each texel lies, row * size / 2 + column."""
+    """The number of the block [N] of each texel, row * size / 2 + column."""
     row, column = np.divmod(texels.texels, texels.size)
     return np.asarray(row // 2 * (texels.size // 2) + column // 2)
 
@@ -124,7 +124,7 @@ def test_what_varies_with_the_frame_is_averaged_as_well() -> None:
     expected = np.stack([fine.texture[numbers == number].mean(axis=0) for number in full])
     found = coarse.texture[np.searchsorted(avatar.at_level(1).rig.texels.texels, full)]
     alike = np.abs(found[:, SCALES] - expected[:, SCALES] - np.log(GROWTH)).max(axis=1) < 1e-6
-    assert alike.mean() > 0.5  # of which no texel lies far away
+    assert alike.mean() > 0.5  # a block without distant texels
     np.testing.assert_allclose(found[alike, 10:], expected[alike, 10:], rtol=0, atol=1e-6)
 
 
@@ -146,7 +146,7 @@ def test_levels_end_where_details_vary_with_the_frame() -> None:
     assert coarsest(replace(avatar, wavelet=replace(avatar.wavelet, rec_lo=long, rec_hi=long))) == 0
 
 
-def test_a_level_that_is_not_there_is_a_sentence() -> None:
+def test_rejects_a_missing_level() -> None:
     with pytest.raises(InputError, match="level is 3; the avatar has levels 0 to 2"):
         synthetic_avatar().at_level(3)
 

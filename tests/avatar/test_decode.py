@@ -34,7 +34,7 @@ def test_a_frame_of_a_clip_is_its_window_newest_first() -> None:
 
 
 def test_depth_is_keyed_over_the_files_box_about_the_root() -> None:
-    """As players do, who know no box of the splats themselves."""
+    """Players key depth this way too, because they know no box of the splats."""
     avatar = synthetic_avatar()
     clip = avatar.clips[0]
     posed = decode_clip_frame(avatar, clip, frame=3, dtype=np.float64)

@@ -16,7 +16,7 @@ BOX = np.array([[-0.5, 0, -0.25], [0.5, 2, 0.25]])
 
 
 def camera(z: float) -> Camera:
-    """At the middle of the box's height, before its front by so many metres from the origin."""
+    """A camera level with the middle of the box, in front of it at this distance from the origin."""
     view = np.eye(4)
     view[:3, 3] = 0, -1, -z
     return Camera(view, perspective(1.0, aspect=800 / 600), (800, 600))

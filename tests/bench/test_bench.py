@@ -1,4 +1,4 @@
-"""mua-bench: work counted by hand, the avatar it makes, and what it prints and writes."""
+"""mua-bench: work counted by hand, the avatar it makes, and its output."""
 
 import json
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""What a frame must do, counted from its dispatches and by drawing."""
+"""Work of a frame, counted from its dispatches and by drawing."""
 
 import json
 from pathlib import Path
@@ -38,27 +38,27 @@ def test_network_part_costs_what_the_asset_counts(device: Device, avatar_file: P
 def test_counts_what_a_frame_must_do(avatar_file: Path, tmp_path: Path) -> None:
     output = tmp_path / "counts.json"
     ran = process("bench", avatar_file, "--counts", "--json", output)
-    told = json.loads(output.read_text())
-    assert all(name in ran.out for name in (*told["kernels"], "peak frame", "part 2", "2.2"))
-    assert told["dispatches"] == {"decode": 30, "pose": 8, "rest": 7}
-    parts = [part["bytes"] for part in told["parts"]]
-    assert told["bytes"]["peak_frame"] == told["bytes"]["pose"] + max(parts)
-    assert told["bytes"]["decode"] == sum(parts)
-    assert told["bytes"]["pose"] + sum(parts) == sum(kernel["bytes"] for kernel in told["kernels"].values())
-    assert [part["dispatches"] for part in told["parts"]] == [9, 13]
-    assert told["triangles"]["2.2"] == 2 * told["splats"]
-    assert 0 < told["fragments"]["2.2"] < told["fragments"]["1.0"] < told["fragments"]["0.6"]
-    assert [level["texels"] for level in told["levels"]] == [32, 16, 8]
-    assert [level["splats"] for level in told["levels"]] == [
+    report = json.loads(output.read_text())
+    assert all(name in ran.out for name in (*report["kernels"], "peak frame", "part 2", "2.2"))
+    assert report["dispatches"] == {"decode": 30, "pose": 8, "rest": 7}
+    parts = [part["bytes"] for part in report["parts"]]
+    assert report["bytes"]["peak_frame"] == report["bytes"]["pose"] + max(parts)
+    assert report["bytes"]["decode"] == sum(parts)
+    assert report["bytes"]["pose"] + sum(parts) == sum(kernel["bytes"] for kernel in report["kernels"].values())
+    assert [part["dispatches"] for part in report["parts"]] == [9, 13]
+    assert report["triangles"]["2.2"] == 2 * report["splats"]
+    assert 0 < report["fragments"]["2.2"] < report["fragments"]["1.0"] < report["fragments"]["0.6"]
+    assert [level["texels"] for level in report["levels"]] == [32, 16, 8]
+    assert [level["splats"] for level in report["levels"]] == [
         len(synthetic_avatar().at_level(level).rig.texels.texels) for level in range(3)
     ]
-    assert told["levels"][0]["chosen_from"] == 0
-    assert told["levels"][2]["chosen_from"] == 2 * told["levels"][1]["chosen_from"] > 0
+    assert report["levels"][0]["chosen_from"] == 0
+    assert report["levels"][2]["chosen_from"] == 2 * report["levels"][1]["chosen_from"] > 0
     for name in ("decode", "pose"):
-        moved = [level["bytes"][name] for level in told["levels"]]
-        assert moved[0] == told["bytes"][name]
+        moved = [level["bytes"][name] for level in report["levels"]]
+        assert moved[0] == report["bytes"][name]
         assert moved[2] < moved[1] < moved[0]
-    assert all(overdraw >= 1 for overdraw in told["overdraw"].values())
+    assert all(overdraw >= 1 for overdraw in report["overdraw"].values())
 
 
 def test_fragments_are_the_pixels_of_all_quads(device: Device, avatar_file: Path) -> None:

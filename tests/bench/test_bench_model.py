@@ -98,7 +98,7 @@ def test_every_device_names_its_sources(device: ModelDevice) -> None:
     assert device.assumed
 
 
-def test_an_unknown_device_is_told_which_there_are(command: Commands) -> None:
+def test_an_unknown_device_is_refused_with_the_known_ones(command: Commands) -> None:
     said = "--model is 'quest9'; expected one of quest3, adreno-x2, rtx3090"
     with pytest.raises(InputError, match=said):
         model_device("quest9")
@@ -148,9 +148,9 @@ def test_prints_the_model_beside_what_is_measured(
     ],
 )
 def test_figures_of_a_device_are_those_of_its_sources(name: str, said: dict[str, str]) -> None:
-    told = " ".join(DEVICES[name].sources)
+    sources = " ".join(DEVICES[name].sources)
     for figure, words in said.items():
-        assert words in told
+        assert words in sources
         number, unit = words.split()
         assert getattr(DEVICES[name], figure) == pytest.approx(float(number) * (1e-3 if unit == "MHz" else 1))
 

@@ -1,4 +1,4 @@
-"""The whole of mua-deploy against a fake headset: what it does, and one sentence for each way to fail."""
+"""All of mua-deploy against a fake headset: its work, and one sentence for each way to fail."""
 
 import json
 import os
@@ -94,7 +94,7 @@ def test_installs_pushes_and_starts(deploy: Deploy, hero: Path, apk: Path) -> No
     assert any("pm install -r -g" in asked for asked in headset.asked)
 
 
-def test_works_with_a_headset_that_tells_no_exit_codes(deploy: Deploy, hero: Path) -> None:
+def test_works_with_a_headset_without_exit_codes(deploy: Deploy, hero: Path) -> None:
     headset = FakeHeadset(features="cmd")
     assert deploy([headset], hero).status == 0
     assert headset.files == {HERO: hero.read_bytes()}
@@ -165,18 +165,18 @@ def test_refuses_options_that_make_no_sense(command: Commands, arguments: list[s
 
 def test_says_that_the_player_is_not_installed(deploy: Deploy, hero: Path) -> None:
     headset = FakeHeadset(packages=set())
-    told = deploy([headset], hero).sentence
-    assert f"{PACKAGE} is not installed" in told
-    assert "--apk FILE" in told
+    message = deploy([headset], hero).sentence
+    assert f"{PACKAGE} is not installed" in message
+    assert "--apk FILE" in message
     assert headset.files == {}
 
 
 def test_says_why_the_headset_refuses_an_apk(deploy: Deploy, apk: Path) -> None:
     answer = "Failure [INSTALL_FAILED_UPDATE_INCOMPATIBLE: Existing package com.mua.player signatures do not match]"
     headset = FakeHeadset(install_answer=answer)
-    told = deploy([headset], "--apk", apk).sentence
-    assert "INSTALL_FAILED_UPDATE_INCOMPATIBLE" in told
-    assert "adb uninstall" in told
+    message = deploy([headset], "--apk", apk).sentence
+    assert "INSTALL_FAILED_UPDATE_INCOMPATIBLE" in message
+    assert "adb uninstall" in message
     assert headset.files == {}
     assert not any("uninstall" in asked for asked in headset.asked)
 
@@ -192,9 +192,9 @@ def test_says_why_the_headset_refuses_an_apk(deploy: Deploy, apk: Path) -> None:
 )
 def test_leaves_nothing_half_pushed(deploy: Deploy, hero: Path, headset: FakeHeadset, sentence: str) -> None:
     headset.files[HERO] = b"the one before"
-    told = deploy([headset], hero).sentence
-    assert "2G0YC1: " in told
-    assert sentence in told
+    message = deploy([headset], hero).sentence
+    assert "2G0YC1: " in message
+    assert sentence in message
     assert headset.files == {HERO: b"the one before"}
     assert headset.started == []
 
@@ -207,9 +207,9 @@ def test_a_headset_that_vanishes_while_pushed_to_keeps_no_half_avatar(deploy: De
 
 def test_says_that_the_player_does_not_start(deploy: Deploy) -> None:
     headset = FakeHeadset(start_answer="Error type 3\nError: Activity class does not exist.")
-    told = deploy([headset]).sentence
-    assert "starting com.mua.player failed" in told
-    assert "does not exist" in told
+    message = deploy([headset]).sentence
+    assert "starting com.mua.player failed" in message
+    assert "does not exist" in message
 
 
 def test_self_test_passes(deploy: Deploy) -> None:
@@ -220,7 +220,7 @@ def test_self_test_passes(deploy: Deploy) -> None:
 
 
 def idle(arguments: list[str]) -> Iterator[str]:
-    """The log goes on, but nothing of the player comes."""
+    """The log goes on without lines of the player."""
     for _ in range(10):
         time.sleep(0.1)
         yield vrapi()
@@ -316,8 +316,8 @@ def test_bench_has_the_rate_and_the_seconds_asked_for(deploy: Deploy, hero: Path
 
 def test_bench_puts_the_headset_back_after_an_error(deploy: Deploy, hero: Path, tmp_path: Path) -> None:
     headset = FakeHeadset(player=lambda a: [unity(f"MUA-BENCH {run_of(a)} FAIL avatars/hero.muaavatar: crc32")])
-    told = deploy([headset], hero, "--bench", "5", "--json", tmp_path / "bench.json").sentence
-    assert "the player cannot measure: avatars/hero.muaavatar: crc32" in told
+    message = deploy([headset], hero, "--bench", "5", "--json", tmp_path / "bench.json").sentence
+    assert "the player cannot measure: avatars/hero.muaavatar: crc32" in message
     assert headset.properties["debug.oculus.gpuLevel"] == "2"
     assert not headset.worn
     assert not (tmp_path / "bench.json").exists()
@@ -336,9 +336,9 @@ def test_bench_says_that_a_lost_headset_keeps_its_settings(deploy: Deploy, hero:
         return []
 
     headset = FakeHeadset(player=unplug)
-    told = deploy([headset], hero, "--bench", "5").sentence
-    assert "2G0YC1: " in told
-    assert "keeps its measuring settings until it is restarted" in told
+    message = deploy([headset], hero, "--bench", "5").sentence
+    assert "2G0YC1: " in message
+    assert "keeps its measuring settings until it is restarted" in message
 
 
 @pytest.mark.skipif(os.name == "nt", reason="Ctrl-C is sent to one process by POSIX signals only")

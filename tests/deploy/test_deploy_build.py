@@ -1,4 +1,4 @@
-"""The APK comes from Unity's batch mode; where it does not, the log's last error is told."""
+"""The APK comes from Unity's batch mode; where it does not, the log's last error is reported."""
 
 from pathlib import Path
 
@@ -54,7 +54,7 @@ def test_gives_up_where_unity_always_asks_to_run_again(tmp_path: Path) -> None:
         ("exit 0", "wrote no APK, log .*: it names no error"),
     ],
 )
-def test_tells_the_last_error_and_leaves_no_apk(tmp_path: Path, does: str, sentence: str) -> None:
+def test_reports_the_last_error_and_leaves_no_apk(tmp_path: Path, does: str, sentence: str) -> None:
     root = project(tmp_path)
     old = root / "Build" / "mua-player.apk"
     old.parent.mkdir()
@@ -80,7 +80,7 @@ def test_refuses_a_program_that_does_not_start(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("log", "told"),
+    ("log", "best"),
     [
         ("error: a\nX.cs(1,1): error CS1: b\nX.cs(2,1): error CS2: c\nScripts have compiler errors.", "CS2: c"),
         ("BuildFailedException: no OpenXR loader\n  at A ()\nBuild failed with error: 1", "no OpenXR loader"),
@@ -90,6 +90,6 @@ def test_refuses_a_program_that_does_not_start(tmp_path: Path) -> None:
         ("all went well\n", "it names no error"),
     ],
 )
-def test_chooses_the_line_that_tells_most(log: str, told: str) -> None:
-    assert told in last_error(log)
+def test_chooses_the_most_informative_line(log: str, best: str) -> None:
+    assert best in last_error(log)
     assert "\n" not in last_error(log)

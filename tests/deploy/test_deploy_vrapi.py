@@ -54,7 +54,7 @@ def test_figures_are_minimum_median_and_95th_percentile() -> None:
 
 
 def test_warns_of_throttling_and_of_few_samples() -> None:
-    told = " ".join(warnings(benched([parse(vrapi(OLDER))] * 7, 10)))
+    warned = " ".join(warnings(benched([parse(vrapi(OLDER))] * 7, 10)))
     for part in ("only 7 of 10 seconds", "cpu level fell to 3", "gpu level fell to 2", "power state left normal"):
-        assert part in told
+        assert part in warned
     assert warnings(benched([parse(vrapi())] * 8, 10)) == []

@@ -1,4 +1,4 @@
-"""docs/architecture.md is true: every file that it names is there, and defines every function named after it."""
+"""docs/architecture.md: every file that it names exists and defines the functions named after it."""
 
 import ast
 import re

@@ -1,4 +1,4 @@
-"""The pages keep their word: links lead somewhere, files that they name are there, commands take what they show."""
+"""The pages: links lead somewhere, named files exist, and commands take the arguments shown."""
 
 import os
 import re
@@ -14,13 +14,13 @@ from commands import Commands
 
 ROOT = Path(__file__).resolve().parents[2]
 SCRIPTS = tomllib.loads((ROOT / "python" / "pyproject.toml").read_text())["project"]["scripts"]
-BUILT = ("build", "node_modules", ".")  # folders that begin like this hold nobody's pages
+BUILT = ("build", "node_modules", ".")  # prefixes of folders without pages
 LINK = re.compile(r"\[[^\]]*\]\(([^)\s]+)\)")
 CODE = re.compile(r"^```.*?^```|^ {4}.*?$|`[^`\n]+`", re.DOTALL | re.MULTILINE)
 NAMED = re.compile(r"`((?:ComputeShaders|docs|python|schemas|tests|tools|unity-package)/[\w./~-]*\w)`")
 TOOL = re.compile(r"python ((?:tools|tests)/[\w/]+\.py)(.*)")
 COMMAND = re.compile(r"(?:^|[\s/\\`])(mua-|-m mua\.cli\.)(\w+)(?=\s|$)(.*)$")
-REPLACED = re.compile(r"\.\.\.|\[[^\]]*\]")  # what stands for words of the reader's own
+REPLACED = re.compile(r"\.\.\.|\[[^\]]*\]")  # placeholders for the reader's own words
 
 
 def _pages() -> list[Path]:
@@ -36,7 +36,7 @@ PAGES = {page.relative_to(ROOT).as_posix(): page for page in _pages()}
 
 @cache
 def anchors(page: Path) -> set[str]:
-    """What headings of a page are called in addresses, as GitHub makes them."""
+    """Anchors of a page's headings, as GitHub makes them."""
     text = re.sub(r"^```.*?^```", "", page.read_text(), flags=re.DOTALL | re.MULTILINE)
     seen, found = Counter[str](), set()
     for heading in re.findall(r"^#+ (.+?)\s*$", text, re.MULTILINE):
@@ -92,7 +92,7 @@ def test_pages_show_commands_and_tools_with_options() -> None:
 
 @pytest.mark.parametrize("path", PAGES)
 def test_tools_have_the_options_that_are_shown(path: str) -> None:
-    """Of argparse as a string, of typer as a parameter."""
+    """Options of argparse are strings, those of typer parameters."""
     for tool, words in TOOL.findall(PAGES[path].read_text()):
         source = (ROOT / tool).read_text()
         for option in re.findall(r"--([\w-]+)", words):
@@ -105,7 +105,7 @@ def test_commands_take_what_is_shown(
 ) -> None:
     """Options exist and take such values; arguments and a last value may be left out, as in a sentence about one."""
     assert SCRIPTS[f"mua-{name}"] == f"mua.cli.{name}:run"
-    monkeypatch.setattr(typer.core.TyperCommand, "invoke", lambda *_: 0)  # what was understood is not done
+    monkeypatch.setattr(typer.core.TyperCommand, "invoke", lambda *_: 0)  # arguments are parsed but nothing runs
     ended = command(name, *shlex.split(words))
     said = " ".join(ended.err.split())
     enough = ended.status == 0 or "Missing " in said or "requires an argument" in said

@@ -1,4 +1,4 @@
-"""docs/python.md: what it shows runs as it stands, in a folder with the files that it names."""
+"""docs/python.md: its examples run as they stand, in a folder with the files that they name."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -18,7 +18,7 @@ from mua.student.settings import PRESETS
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "python.md"
 READING, BAKING, TRAINING, _ = python_blocks(PAGE)
-LINES = 10  # of the first example, at most
+LINES = 10  # most lines of the first example
 
 
 def walking_avatar() -> mua.Avatar:
@@ -35,9 +35,9 @@ def test_the_example_reads_decodes_draws_and_saves(
     avatar = walking_avatar()
     mua.save("hero.muaavatar", avatar)
     exec(READING, {})
-    told = capsys.readouterr().out.splitlines()
-    assert told[0] == repr(avatar)
-    assert told[1] == f"{avatar.clips!r}"
+    printed = capsys.readouterr().out.splitlines()
+    assert printed[0] == repr(avatar)
+    assert printed[1] == f"{avatar.clips!r}"
     with Image.open("hero.png") as hero, Image.open("standing.png") as standing:
         assert (hero.size, standing.size) == ((480, 720), (640, 960))
         assert np.asarray(hero).std() > 0

@@ -34,7 +34,7 @@ def tree() -> tuple[Skeleton, Clip]:
 def by_bvhio(path: Path, frames: int) -> dict[str, np.ndarray]:
     """Positions [F, 3] of joints by name."""
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", PendingDeprecationWarning)  # of the library that it stands on
+        warnings.simplefilter("ignore", PendingDeprecationWarning)  # a warning of the reader's own dependency
         import bvhio
     hierarchy = bvhio.readAsHierarchy(str(path))
     found: dict[str, list[np.ndarray]] = {}

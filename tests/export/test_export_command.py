@@ -1,4 +1,4 @@
-"""mua-export writes the files that it is asked for, all of them or none, and refuses the rest in a sentence."""
+"""mua-export writes the requested files, all of them or none, and refuses wrong requests in a sentence."""
 
 import json
 import re
@@ -18,8 +18,8 @@ from mua.export import formats
 from mua.export.sequence import file_names, write_all
 from mua.export.splats import morton_order
 
-FRAMES = 7  # of the synthetic avatar's clip
-STEPS = 1023  # of 10 bits, the fewest that any format has for a coordinate
+FRAMES = 7  # frames of the synthetic avatar's clip
+STEPS = 1023  # steps of 10 bits, the fewest that any format has for a coordinate
 
 
 def test_the_ending_says_which_format_and_the_command_what_was_written(
@@ -93,7 +93,7 @@ def test_a_sequence_that_fails_leaves_nothing_behind(
     assert (tmp_path / "f_0.ply").read_bytes() == b"old"
 
 
-def test_what_cannot_be_written_is_told_and_leaves_nothing_behind(tmp_path: Path) -> None:
+def test_a_failed_write_is_reported_and_leaves_nothing_behind(tmp_path: Path) -> None:
     (tmp_path / "b").mkdir()
     with pytest.raises(InputError, match=r"b: cannot be written \(.*\)"):
         write_all((tmp_path / name, b"x") for name in ("b", "c"))
@@ -113,7 +113,7 @@ def test_motion_of_another_file_is_exported_too(command: Commands, avatar_file: 
     more = ("--motion", tmp_path / "m.bvh", "--mapping", tmp_path / "map.json", "--axes", "y-up")
     ended = command("export", avatar_file, "-o", tmp_path / "b.ply", *more)
     assert ended.status == 0, ended.err
-    assert "joints" in ended.err  # what retargeting has to tell
+    assert "joints" in ended.err  # the note of retargeting
     moved = read_ply(tmp_path / "b.ply").centres
     assert np.abs(moved - avatar.decode("wave", 0).centres).max() > 0.01
 
@@ -152,7 +152,7 @@ def test_a_mapping_says_which_joint_moves_and_a_name_which_of_several_motions(
         (("-o", "a_%s_%d.ply", "--frames", "0:3"), "-o is a_%s_%d.ply; expected one place for the number of the frame"),
     ],
 )  # fmt: skip
-def test_a_wrong_option_is_told(
+def test_rejects_a_wrong_option(
     command: Commands,
     avatar_file: Path,
     tmp_path: Path,

@@ -250,8 +250,8 @@ def test_our_own_reader_finds_the_same_character(
 def test_files_of_all_frames_have_plain_names(
     command: Commands, stored: mua.Avatar, avatar_file: Path, tmp_path: Path
 ) -> None:
-    told = command("export", avatar_file, "-o", "a_%d.glb").sentence
-    assert told == "error: -o is a_%d.glb; a .glb file of mesh holds all frames, expected a plain name"
+    message = command("export", avatar_file, "-o", "a_%d.glb").sentence
+    assert message == "error: -o is a_%d.glb; a .glb file of mesh holds all frames, expected a plain name"
     command("export", avatar_file, "-o", tmp_path / "g_%d.glb", "--what", "geometry", "--frames", ":2")
     assert sorted(path.name for path in tmp_path.iterdir()) == ["g_0.glb", "g_1.glb"]
 

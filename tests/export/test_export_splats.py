@@ -1,4 +1,4 @@
-"""Exported splats: what other programs read is what the avatar is, with the same colour from every direction."""
+"""Exported splats: other programs read the avatar's splats, with equal colour from every direction."""
 
 import gzip
 from dataclasses import replace
@@ -152,7 +152,7 @@ def test_any_rotation_comes_back(tmp_path: Path, kind: str, step: float) -> None
 
 
 def test_a_spz_keeps_the_place_just_below_a_power_of_two(tmp_path: Path) -> None:
-    """Where rounding reaches the next bit."""
+    """There rounding reaches the next bit."""
     edge = np.nextafter(np.float32(8), np.float32(0))
     far = replace(exported(), centres=np.tile(np.array([edge, -edge, 0], np.float32), (len(exported()), 1)))
     found = read_by_gaussforge(written(tmp_path, spz_bytes(far)), "spz")

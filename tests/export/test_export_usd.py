@@ -1,4 +1,4 @@
-"""Exported USD: what Pixar's own library makes of the skeleton, the skin, the detailed geometry and the splats."""
+"""Exported USD: skeleton, skin, detailed geometry and splats as Pixar's own library reads them."""
 
 import io
 from pathlib import Path
@@ -145,12 +145,12 @@ def test_the_splats_are_those_of_every_frame(
         assert (posed.centres < high).all()
 
 
-def test_a_library_without_splats_is_told(
+def test_rejects_a_library_without_splats(
     command: Commands, avatar_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.delattr(UsdVol, "ParticleField3DGaussianSplat")
-    told = command("export", avatar_file, "-o", tmp_path / "a.usdc", "--what", "splats").sentence
-    assert "splats in USD need usd-core 26.3 or later, found" in told
+    message = command("export", avatar_file, "-o", tmp_path / "a.usdc", "--what", "splats").sentence
+    assert "splats in USD need usd-core 26.3 or later, found" in message
     assert list(tmp_path.iterdir()) == []
 
 

@@ -1,4 +1,4 @@
-"""The source character beside its splats: what each painter draws, and what the comparison finds."""
+"""The source character beside its splats: the images of each painter, and the result of the comparison."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -131,7 +131,7 @@ def test_splats_are_drawn_as_by_the_reference(context: moderngl.Context, monkeyp
     apart = np.abs(image - render_premultiplied(frame, camera))
     # Some 30 splats over each other, each with a few roundings of float32 in an exponent of up to 6.
     assert np.quantile(apart, 0.99) < 30 * 24 * 2**-24
-    assert apart.max() < LEAST_OPACITY  # what a pixel gains or loses on the rim of a quad
+    assert apart.max() < LEAST_OPACITY  # the error of a pixel on the rim of a quad
 
 
 def column(tmp_path: Path) -> Character:
@@ -172,7 +172,7 @@ def test_a_body_that_turns_on_a_still_root_is_seen_from_its_own_front(tmp_path: 
     assert poser.of_clip(replace(turned, rotations=apart), 0).yaw == pytest.approx(0, abs=1e-6)
 
 
-def test_a_poor_silhouette_is_told_with_its_pose_and_place() -> None:
+def test_a_poor_silhouette_is_reported_with_its_pose_and_place() -> None:
     image = np.zeros((2, 2, 4))
     shot = Shot("front", image, image, Agreement(90, 5, 5, 0.0), (0, 0), "Spine", 0.1)
     (sentence,) = report.sentences(Fidelity((PoseFidelity("bow", (shot,)),)))
@@ -244,7 +244,7 @@ def test_a_figure_stands_out_from_the_background_of_its_sheet(tmp_path: Path, pa
     assert (background == 255).all() == (not pale)
 
 
-def test_wrong_colours_are_measured_and_told(tmp_path: Path) -> None:
+def test_wrong_colours_are_measured_and_reported(tmp_path: Path) -> None:
     character = column(tmp_path)
     dark = replace(character, base_color=character.base_color // np.array([2, 2, 2, 1], np.uint8))
     fidelity, warnings = fidelity_of(dark, (), texels=TEXELS)

@@ -1,4 +1,4 @@
-"""One process at a time in a directory, whatever happens to those that were there before."""
+"""One process at a time in a directory, whatever happened to earlier ones."""
 
 import errno
 import os
@@ -16,7 +16,7 @@ HOLD = (
     "import sys, time; from pathlib import Path; from mua.files.lock import DirectoryLock;"
     "lock = DirectoryLock(Path(sys.argv[1]), name='it'); print('held', flush=True); time.sleep(600)"
 )
-# Ten times: wait for the directory, and find nobody else's mark in it.
+# Ten times: wait for the directory, and find no mark of another process in it.
 TAKE_TURNS = """
 import sys, time
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Files that are something else than their name says."""
+"""Files whose content differs from their suffix."""
 
 from pathlib import Path
 

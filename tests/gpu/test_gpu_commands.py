@@ -1,4 +1,4 @@
-"""Buffers, dispatches and their order, checked by what numpy makes of the same."""
+"""Buffers, dispatches and their order, checked against numpy."""
 
 from pathlib import Path
 from types import SimpleNamespace
@@ -104,7 +104,7 @@ def test_out_of_memory_is_one_sentence(error: wgpu.GPUError) -> None:
         Buffer(full, 1 << 39, name="texels")
 
 
-def test_wrong_buffers_are_told(device: Device, shader: Path) -> None:
+def test_rejects_wrong_buffers(device: Device, shader: Path) -> None:
     kernel, commands = device.kernel(shader, "AddIndex"), device.commands()
     x, y = device.buffer(16, name="x"), device.buffer(16, name="y")
     constants = {"count": 4, "scale": 1.0}
@@ -122,7 +122,7 @@ def test_wrong_buffers_are_told(device: Device, shader: Path) -> None:
         commands.dispatch(device.kernel(shader, "Twice"), (1, 1, 1), {"quads": quads}, count=1)
 
 
-def test_run_tells_a_wrong_type_of_values(device: Device, shader: Path) -> None:
+def test_run_rejects_a_wrong_type_of_values(device: Device, shader: Path) -> None:
     for dtype in (np.int32, np.float16):
         buffers = {"x": np.zeros(4, dtype), "y": np.zeros(4, np.float32)}
         with pytest.raises(InputError, match=f"buffer x is {np.dtype(dtype)}, expected 4-byte float values"):

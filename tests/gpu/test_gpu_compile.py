@@ -1,4 +1,4 @@
-"""The compiler is asked once for each content, and what it refuses is one sentence."""
+"""The compiler runs once for each content, and its refusal becomes one sentence."""
 
 from pathlib import Path
 
@@ -82,12 +82,12 @@ def test_an_absent_include_is_named(shader: Path) -> None:
         compile.spirv(shader, "Fill")
 
 
-def test_an_absent_compiler_is_told_with_its_package(shader: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_absent_compiler_is_reported_with_its_package(shader: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(glslang, "find", lambda: None)
-    told = (
+    message = (
         r"Fill as it stands here does not come compiled, and .* is not on this machine; it comes with .* glslang-tools"
     )
-    with pytest.raises(InputError, match=told):
+    with pytest.raises(InputError, match=message):
         compile.spirv(shader, "Fill")
 
 

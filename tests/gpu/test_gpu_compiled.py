@@ -1,4 +1,4 @@
-"""Nobody needs a compiler who changes no shader: every entry point comes compiled, from the text that is here."""
+"""Unchanged shaders need no compiler: every entry point comes compiled from the text of this checkout."""
 
 import shutil
 from pathlib import Path
@@ -58,8 +58,8 @@ def test_a_changed_shader_asks_for_a_compiler_in_one_sentence(
     with (copied / edited).open("a") as file:
         file.write("// edited\n")
     path = copied / "mlp_matmul.compute"
-    told = r"mlp_matmul\.compute: MlpMatmul as it stands here does not come compiled, and .* glslang-tools"
-    with pytest.raises(InputError, match=told):
+    message = r"mlp_matmul\.compute: MlpMatmul as it stands here does not come compiled, and .* glslang-tools"
+    with pytest.raises(InputError, match=message):
         compile.spirv(path, "MlpMatmul")
 
 
@@ -82,7 +82,7 @@ def _of_another_text(folder: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("damage", "told"),
+    ("damage", "fault"),
     [
         (_flip, "splat.SplatVert.vert.spv is not what the compiler makes"),
         (_of_another_text, "splat.SplatVert.vert.spv was made from another text"),
@@ -91,9 +91,9 @@ def _of_another_text(folder: Path) -> None:
     ],
     ids=["code", "text", "missing", "left over"],
 )
-def test_the_check_names_what_is_out_of_date(folder: Path, damage, told: str) -> None:  # type: ignore[no-untyped-def]
+def test_the_check_names_what_is_out_of_date(folder: Path, damage, fault: str) -> None:  # type: ignore[no-untyped-def]
     damage(folder)
-    assert gen_spirv.faults(folder) == [told]
+    assert gen_spirv.faults(folder) == [fault]
 
 
 def test_writing_mends_what_is_out_of_date(folder: Path) -> None:

@@ -1,4 +1,4 @@
-"""Constants of every type reach the device; wrong ones are told by name."""
+"""Constants of every type reach the device; wrong ones are refused by name."""
 
 from pathlib import Path
 
@@ -87,7 +87,7 @@ def test_every_type_reaches_the_device(device: Device, shader: Path) -> None:
         ("view", VIEW[:1], r"view is float64 \[1, 4, 4\], expected float \[2, 4, 4\]"),
     ],
 )
-def test_wrong_types_and_shapes_are_told(
+def test_rejects_wrong_types_and_shapes(
     device: Device, kernel: Kernel, name: str, value: object, expected: str
 ) -> None:
     buffers = {"y": device.buffer(200, name="y"), "z": device.buffer(24, name="z")}
@@ -95,7 +95,7 @@ def test_wrong_types_and_shapes_are_told(
         device.commands().dispatch(kernel, (1, 1, 1), buffers, **(VALUES | {name: value}))
 
 
-def test_missing_and_unknown_names_are_told(device: Device, kernel: Kernel) -> None:
+def test_rejects_missing_and_unknown_names(device: Device, kernel: Kernel) -> None:
     buffers = {"y": device.buffer(200, name="y"), "z": device.buffer(24, name="z")}
     without = {name: value for name, value in VALUES.items() if name != "taps"}
     with pytest.raises(InputError, match="kernel Echo: constant taps is missing"):

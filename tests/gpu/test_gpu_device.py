@@ -1,4 +1,4 @@
-"""Which device is opened, and what is said when none fits."""
+"""The choice of a device, and the error when none fits."""
 
 from types import SimpleNamespace
 
@@ -52,18 +52,18 @@ def test_devices_are_chosen_by_index_or_part_of_a_name(choice: str | None, chose
 
 
 @pytest.mark.usefixtures("listed")
-def test_an_unknown_device_is_told_with_those_that_there_are() -> None:
+def test_an_unknown_device_is_refused_with_the_present_ones() -> None:
     with pytest.raises(InputError, match=r"device nonesuch: .*; expected one of 0: Good 4090 \(Vulkan\), 1: Odd 7"):
         open_device("nonesuch")
 
 
-def test_no_device_is_told_with_a_package(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_no_device_is_reported_with_a_package(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(wgpu.gpu, "enumerate_adapters_sync", list)
     with pytest.raises(InputError, match=r"no graphics device: install a Vulkan driver .*mesa-vulkan-drivers"):
         open_device()
 
 
-def test_a_lost_device_is_told() -> None:
+def test_a_lost_device_is_reported() -> None:
     device = open_device()
     buffer = device.buffer(np.arange(4, dtype=np.uint32), name="texels")
     device.close()

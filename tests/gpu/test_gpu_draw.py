@@ -92,7 +92,7 @@ def test_culled_triangles_are_not_drawn(device: Device, tmp_path: Path) -> None:
         assert np.all(image == (1 if seen else np.array(CLEAR)))
 
 
-def test_wrong_names_are_told(device: Device, tmp_path: Path) -> None:
+def test_rejects_wrong_names(device: Device, tmp_path: Path) -> None:
     drawing = pipeline(device, tmp_path)
     corners, tints = device.buffer(ALL, name="corners"), device.buffer(16, name="tints")
     label = "pipeline TriangleVert with TriangleFrag"
@@ -106,7 +106,7 @@ def test_wrong_names_are_told(device: Device, tmp_path: Path) -> None:
             drawing.bind(None, buffers, **constants)
 
 
-def test_an_entry_that_is_not_there_is_told(device: Device, tmp_path: Path) -> None:
+def test_rejects_a_missing_entry(device: Device, tmp_path: Path) -> None:
     path = tmp_path / "triangle.hlsl"
     path.write_text(SHADER)
     with pytest.raises(InputError, match=r"triangle\.hlsl: Nonesuch does not compile"):

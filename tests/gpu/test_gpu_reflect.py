@@ -1,4 +1,4 @@
-"""What is read off compiled code, against HLSL's own rules."""
+"""Interfaces read off compiled code, against HLSL's own rules."""
 
 from pathlib import Path
 

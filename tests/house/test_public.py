@@ -1,4 +1,4 @@
-"""The names of `import mua`: what they take, what they refuse, and what they load."""
+"""The names of `import mua`: accepted and refused arguments, and the packages they load."""
 
 import ast
 from collections.abc import Callable
@@ -178,7 +178,7 @@ def test_a_bake_refuses_a_wrong_option_in_a_sentence(wrong: str) -> None:
 def test_a_bake_is_ordered_as_its_options_say(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """And tells Python's log what a command shows."""
+    """Python's log also gets what the command prints."""
     given: list[Order] = []
 
     def carry_out(order: Order, listener: Listener) -> None:
@@ -262,9 +262,9 @@ def test_a_recording_refuses_frames_that_it_does_not_hold(written: Path) -> None
 @pytest.mark.parametrize("wrong", WRONG)
 def test_a_wrong_call_ends_in_a_sentence(wrong: str) -> None:
     call, sentence = WRONG[wrong]
-    with pytest.raises(mua.InputError, match=sentence) as told:
+    with pytest.raises(mua.InputError, match=sentence) as raised:
         call()
-    assert "\n" not in str(told.value)
+    assert "\n" not in str(raised.value)
 
 
 def test_an_avatar_says_what_it_is_in_a_line() -> None:

@@ -1,4 +1,4 @@
-"""A close-up looks at what a joint moves, by the names that people call it."""
+"""A close-up looks at the surface that a joint moves, by the usual names of body parts."""
 
 from dataclasses import replace
 
@@ -47,7 +47,7 @@ def test_looks_at_the_middle_of_what_the_joint_moves_wherever_it_goes() -> None:
     bind = rig.skeleton.bind_pose
     place = rig.mesh.vertices[0]
     np.testing.assert_allclose(focus.places(rig.skeleton, bind.rotations, bind.translations), place, atol=1e-9)
-    moved = bind.translations + np.eye(len(bind.translations))[0][:, None] * [3.0, 0, -1]  # of the first joint
+    moved = bind.translations + np.eye(len(bind.translations))[0][:, None] * [3.0, 0, -1]  # the first joint's
     np.testing.assert_allclose(
         focus.places(rig.skeleton, bind.rotations, moved), place + np.array([3, 0, -1]), atol=1e-9
     )

@@ -1,4 +1,4 @@
-"""Tensors reach the device in the type in which the file stores them; what does not fit is refused by name."""
+"""Tensors reach the device in the type in which the file stores them; tensors that do not fit are refused by name."""
 
 from pathlib import Path
 
@@ -18,7 +18,7 @@ KINDS = {"f32": 0, "f16": 1, "i8": 2}
 
 
 class Small:
-    """A device that binds at most so many bytes."""
+    """A device that binds few bytes at most."""
 
     def __init__(self, limit: int) -> None:
         self.limit = limit

@@ -1,4 +1,4 @@
-"""A player shows the level of detail that is asked for, and says once where there is none."""
+"""A player shows the requested level of detail, and says once where it does not exist."""
 
 from dataclasses import replace
 
@@ -16,7 +16,7 @@ SCREEN = (64, 64)
 
 
 def seen_from(texel: float) -> list[Camera]:
-    """A camera so far before the synthetic avatar's box that a texel of its finest level takes so many pixels."""
+    """A camera before the synthetic avatar's box, at which a texel of its finest level takes this many pixels."""
     avatar, projection = synthetic_avatar(), perspective(0.5, aspect=1.0)
     away = texel_length(avatar) * projection[1, 1] * SCREEN[1] / 2 / texel
     root = avatar.rig.skeleton.world(*_pose())[1][avatar.rig.skeleton.root]

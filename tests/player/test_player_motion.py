@@ -1,4 +1,4 @@
-"""What an avatar is shown doing: its own clips or another file's, at its own rate."""
+"""The motion that an avatar plays: its own clips or another file's, at its own rate."""
 
 from dataclasses import replace
 from pathlib import Path

@@ -37,7 +37,7 @@ def test_a_video_that_fails_midway_leaves_what_was_there(tmp_path: Path) -> None
     assert list(tmp_path.iterdir()) == [path]
 
 
-def test_an_encoder_that_stops_is_a_sentence(tmp_path: Path) -> None:
+def test_an_encoder_that_stops_is_reported(tmp_path: Path) -> None:
     path = tmp_path / "v.mp4"
     with pytest.raises(InputError, match=r"v\.mp4: the encoder stopped"):
         write_video(path, pictures(3), rate=-1.0)

@@ -1,4 +1,4 @@
-"""Overlays are drawn where the numpy reference says that surface, joints and shadow are."""
+"""Overlays are drawn at the numpy reference's places of surface, joints and shadow."""
 
 from dataclasses import astuple, replace
 from pathlib import Path
@@ -108,7 +108,7 @@ def drawn_box(image: Array) -> Array:
 
 
 def expected(stage: Stage, camera: Camera, show: str) -> Picture:
-    """What numpy draws of the reference's posed splats, template or joints."""
+    """numpy's image of the reference's posed splats, template or joints."""
     rig = stage.avatar.rig
     if show == "geometry":
         triangles = surface_mesh(stage.avatar).triangles.astype(np.int64)
@@ -155,7 +155,7 @@ def test_a_bone_that_passes_the_camera_is_drawn_to_where_it_leaves_the_picture(
     along = (ahead - behind) / np.linalg.norm(ahead - behind)
     across = rotation.normalize(np.cross(along, [1.0, 0.2, 0.1]))
     up = np.cross(across, along)
-    look = np.cos(0.27) * along - np.sin(0.27) * across  # so that the bone's direction in the image tells its end
+    look = np.cos(0.27) * along - np.sin(0.27) * across  # so that the bone's direction in the image shows its end
     turn = np.stack([np.cross(look, up), up, -look])
     view = np.eye(4)
     view[:3, :3], view[:3, 3] = turn, -turn @ (0.75 * behind + 0.25 * ahead) + [-0.03 * near, -0.04 * near, 0]
@@ -170,7 +170,7 @@ def test_a_bone_that_passes_the_camera_is_drawn_to_where_it_leaves_the_picture(
 
 
 def test_a_bone_behind_the_camera_is_not_drawn(stage: Stage) -> None:
-    """Of an eye that looks straight away from the middle of a bone."""
+    """The eye looks straight away from the middle of the bone."""
     _, joints = stage.avatar.rig.skeleton.world(stage.clip.rotations[INDEX], stage.clip.translations[INDEX])
     along = (joints[2] - joints[1]) / np.linalg.norm(joints[2] - joints[1])
     look = rotation.normalize(np.cross(along, [1.0, 0.2, 0.1]))

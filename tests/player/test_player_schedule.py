@@ -1,4 +1,4 @@
-"""Decodes that are spread over displayed frames: what each frame shows, and how much of a decode it makes."""
+"""Decodes spread over displayed frames: what each frame shows, and how many parts it decodes."""
 
 from pathlib import Path
 
@@ -16,7 +16,7 @@ from mua.player.schedule import DecodeSchedule, Moment, Window
 from mua.player.session import Session
 from mua.player.source import Source
 
-FRAMES = 7  # of the clip
+FRAMES = 7  # frames of the clip
 HEADSET = 25 / 72  # frames of the avatar in a displayed one
 
 
@@ -54,7 +54,7 @@ class Display:
         np.testing.assert_array_equal(self.frame.texel_channels.read()[:words], alone.texel_channels.read()[:words])
 
     def play(self, step: float, count: int) -> list[int]:
-        """Parts of so many displayed frames, in each of which the clip goes on by `step` of its frames."""
+        """Decoded parts in each displayed frame, while the clip advances by `step` of its frames per display."""
         due = [int(shown * step) % FRAMES for shown in range(count)]
         return [self.show(index, (index + 1) % FRAMES) for index in due]
 
@@ -77,7 +77,7 @@ def test_a_display_less_than_twice_as_fast_is_on_time_too(display: Display) -> N
     assert max(display.play(0.8, 20)) == PARTS
 
 
-def test_what_nobody_saw_coming_is_decoded_at_once(display: Display) -> None:
+def test_an_unforeseen_pose_is_decoded_at_once(display: Display) -> None:
     assert display.show(0, 1) == PARTS
     assert display.show(0, 1) == 1
     assert display.show(4) == PARTS

@@ -1,4 +1,4 @@
-"""What the window plays: where its camera stands, which frame it rests at, and which clip and file are chosen."""
+"""The session of the window: its camera, its frame while paused, and the chosen clip and file."""
 
 from dataclasses import replace
 from pathlib import Path

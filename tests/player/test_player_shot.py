@@ -68,7 +68,7 @@ def test_the_camera_stands_before_the_figures_front(degrees: float) -> None:
 
 
 def wrapped(angle: float) -> float:
-    """The same angle within half a turn of 0."""
+    """The angle wrapped to within half a turn of 0."""
     return float(np.angle(np.exp(1j * angle)))
 
 

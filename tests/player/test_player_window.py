@@ -76,7 +76,7 @@ class Driven:
         ):
             buttons = () if kind == "pointer_move" and (x, y) == start else common["buttons"]
             self.send({**common, "event_type": kind, "x": x, "y": y, "buttons": buttons})
-            self.picture()  # the panel learns where the mouse is when it is drawn
+            self.picture()  # drawing updates the panel's mouse position
 
     def picture(self) -> Array:
         return np.asarray(self.canvas.draw())[..., :3].copy()
@@ -215,7 +215,7 @@ def test_keeps_the_avatar_where_the_next_is_broken(window: Driven) -> None:
     session.choose_file(session.files[1])
     assert session.file == session.files[1]
     assert session.failure == ""
-    assert session.clip.name == "wave"  # that of the same name
+    assert session.clip.name == "wave"  # the clip of the same name
 
 
 def test_plays_round_and_scrubs(window: Driven) -> None:
@@ -288,7 +288,7 @@ def test_says_that_there_is_no_display(avatar_files: tuple[Path, ...], monkeypat
 
 @pytest.fixture
 def display() -> Iterator[str]:
-    """A virtual display that nobody else uses."""
+    """A virtual display of this test's own."""
     if shutil.which("Xvfb") is None:
         pytest.skip("needs Xvfb (Debian's xvfb, which tools/setup.sh installs)")
     reader, writer = os.pipe()
@@ -309,7 +309,7 @@ def display() -> Iterator[str]:
 @pytest.mark.parametrize("options", [[], ["--size", "760x600", "--background", "#204060"]])
 def test_opens_a_window_on_a_display(display: str, avatar_files: tuple[Path, ...], options: list[str]) -> None:
     color = (0x20, 0x40, 0x60) if options else COLOR
-    covered = 0.15 if options else 0.3  # of the screen, at least
+    covered = 0.15 if options else 0.3  # least share of the screen
     device = ["--device", os.environ["MUA_DEVICE"]] if "MUA_DEVICE" in os.environ else []
     code = "from mua.cli.view import run; run()"
     environment = {**os.environ, "DISPLAY": display}

@@ -106,7 +106,7 @@ def test_a_component_without_a_margin_ends_with_its_range() -> None:
 
 
 def test_a_hold_begins_gently() -> None:
-    """Of slope 1 where the range ends, and never falling: no jump and no stop where a motion leaves training."""
+    """The slope is 1 where the range ends and never negative: motion that leaves training neither jumps nor stops."""
     own = one_component(-1, 2, 0.5)
     path = hold(np.linspace(-4, 5, 9001)[:, None], own)[:, 0]
     steps = np.diff(path) / 1e-3

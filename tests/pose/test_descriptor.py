@@ -48,7 +48,7 @@ def matrix(q: np.ndarray) -> np.ndarray:
 
 
 def world(rotations: np.ndarray, joint: int) -> np.ndarray:
-    """How a joint of a chain is turned in the world: the joints above it have the numbers before its own."""
+    """World rotation of a joint in a chain; the joints above it have the numbers before its own."""
     turned = np.eye(3)
     for local in rotations[: joint + 1]:
         turned = turned @ matrix(local)
@@ -118,7 +118,7 @@ def test_holds_the_clip_still_before_its_start(skeleton: Skeleton, clip: Clip) -
 
 
 def moved(skeleton: Skeleton, clip: Clip, yaw: float, shift: np.ndarray) -> Clip:
-    """The same motion elsewhere in the world: turned about Y, then shifted."""
+    """The motion elsewhere in the world: turned about Y, then shifted."""
     turn = np.array([np.cos(yaw / 2), 0, np.sin(yaw / 2), 0])
     above = skeleton.bind_rotations[0]
     local = rotation.multiply(rotation.conjugate(above), rotation.multiply(turn, above))
@@ -177,7 +177,7 @@ def test_chooses_a_joint_that_differs_between_still_clips(skeleton: Skeleton) ->
 
 
 def test_chooses_what_is_translated_below_the_root_and_used(skeleton: Skeleton) -> None:
-    """Above the root, a translation moves the whole character, which is no matter of its shape."""
+    """Above the root, a translation moves the whole character and does not change its shape."""
     rotations = np.tile(skeleton.bind_rotations, (40, 1, 1))
     translations = np.tile(skeleton.bind_translations, (40, 1, 1))
     wave = np.sin(np.arange(40) * 2 * np.pi / 40)  # standard deviation sqrt(1/2)

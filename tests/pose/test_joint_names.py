@@ -1,4 +1,4 @@
-"""Body parts behind joint names of many habits."""
+"""Body parts of joint names in many naming conventions."""
 
 import functools
 import re

@@ -1,4 +1,4 @@
-"""Mistakes in units and conventions: each is refused or warned of with its cause; what is right passes in silence."""
+"""Mistakes in units and conventions: each is refused or warned of with its cause; correct frames are not."""
 
 import warnings
 from collections.abc import Callable
@@ -38,7 +38,7 @@ def character() -> Character:
 
 @pytest.fixture(scope="module")
 def frames(character: Character) -> list[TeacherFrame]:
-    """Of a walk and of a turn, so that one faces away."""
+    """Frames of a walk and of a turn, so that one faces away."""
     teacher = SimulatedTeacher(character, texels=TEXELS)
     played = [played_frames(teacher, clip, (0, 30)) for clip in character.clips[:2]]
     return [frame for some in played for frame in some]
@@ -210,10 +210,10 @@ def test_what_may_be_meant_is_warned_of_once_and_recorded(
     frame = change(frames[0])
     with TeacherWriter(tmp_path, rig, rate=30) as writer:
         writer.start_clip("walk")
-        with pytest.warns(LikelyMistake, match=f"clip 'walk', frame 0: texture: .*{pattern(expected)}") as told:
+        with pytest.warns(LikelyMistake, match=f"clip 'walk', frame 0: texture: .*{pattern(expected)}") as caught:
             add_twice(writer, frame)
-    assert len(told) == 1
-    assert told[0].filename == __file__
+    assert len(caught) == 1
+    assert caught[0].filename == __file__
     assert Recording(tmp_path).count() == 2
 
 
@@ -222,7 +222,7 @@ def add_twice(writer: TeacherWriter, frame: TeacherFrame) -> None:
     writer.add(frame.pose, frame.mesh, frame.texture)
 
 
-def test_world_rotations_are_told_from_local_ones(rig: Rig, frames: list[TeacherFrame], tmp_path: Path) -> None:
+def test_world_rotations_are_recognised(rig: Rig, frames: list[TeacherFrame], tmp_path: Path) -> None:
     pose = turned(frames[0], np.radians(170))
     world, _ = rig.skeleton.world(pose.rotations, pose.translations)
     with pytest.raises(InputError, match=r"are these rotations in the world\? local ones"):
@@ -245,7 +245,7 @@ def image_of(rig: Rig, texture: Array, *, elsewhere: float) -> Array:
         (lambda image: image.swapaxes(0, 1)[:, ::-1], "if the texture is transposed and upside down: is it?"),
     ],
 )
-def test_an_image_that_is_turned_is_told_by_how_its_splats_lie(
+def test_a_turned_image_is_recognised_by_how_its_splats_lie(
     rig: Rig, frames: list[TeacherFrame], tmp_path: Path, turn: Callable[[Array], Array], question: str
 ) -> None:
     image = image_of(rig, frames[0].texture, elsewhere=0.5)
@@ -262,7 +262,7 @@ def test_texels_that_are_empty_in_the_teachers_map_are_counted(
 
 
 @pytest.mark.parametrize(("up", "question"), [(1, "column by column"), (-1, "column by column, from the bottom")])
-def test_texels_that_are_counted_by_column_are_told_by_how_their_splats_lie(
+def test_texels_counted_by_column_are_recognised_by_how_their_splats_lie(
     rig: Rig, frames: list[TeacherFrame], tmp_path: Path, up: int, question: str
 ) -> None:
     row, column = np.divmod(rig.texels.texels, rig.texels.size)
@@ -270,7 +270,7 @@ def test_texels_that_are_counted_by_column_are_told_by_how_their_splats_lie(
         add(tmp_path, rig, frames[0], frames[0].texture[np.lexsort((up * row, column))])
 
 
-def test_splats_in_posed_space_are_told_by_how_they_lie(rig: Rig, frames: list[TeacherFrame], tmp_path: Path) -> None:
+def test_splats_in_posed_space_are_recognised(rig: Rig, frames: list[TeacherFrame], tmp_path: Path) -> None:
     pose = turned(frames[0], np.radians(90))
     from mua.avatar.decode import pose_splats
 
@@ -280,9 +280,7 @@ def test_splats_in_posed_space_are_told_by_how_they_lie(rig: Rig, frames: list[T
         add(tmp_path, rig, replace(in_world, pose=pose))
 
 
-def test_a_frame_that_is_told_by_its_number_comes_in_order_and_once(
-    rig: Rig, frames: list[TeacherFrame], tmp_path: Path
-) -> None:
+def test_numbered_frames_come_in_order_and_once(rig: Rig, frames: list[TeacherFrame], tmp_path: Path) -> None:
     pose = frames[0].pose
     with TeacherWriter(tmp_path, rig, rate=30) as writer:
         writer.start_clip("walk")
@@ -297,7 +295,7 @@ def test_a_frame_that_is_told_by_its_number_comes_in_order_and_once(
         assert writer.next_frame("walk") == 3
 
 
-def test_what_is_right_passes_in_silence(rig: Rig, frames: list[TeacherFrame], tmp_path: Path) -> None:
+def test_correct_frames_pass_without_a_warning(rig: Rig, frames: list[TeacherFrame], tmp_path: Path) -> None:
     """Also quaternions of any length and sign, as networks put them out, and round splats, which lie nowhere."""
     with warnings.catch_warnings(), TeacherWriter(tmp_path, rig, rate=30) as writer:
         warnings.simplefilter("error")
@@ -310,7 +308,7 @@ def test_what_is_right_passes_in_silence(rig: Rig, frames: list[TeacherFrame], t
 
 
 @pytest.mark.parametrize("name", ["Fox.glb", "lumberjack.glb", "White_F_3_Casual.glb"])
-def test_real_characters_and_their_clips_pass_in_silence(shared_data: SharedData, name: str) -> None:
+def test_real_characters_and_their_clips_pass_without_a_warning(shared_data: SharedData, name: str) -> None:
     character = read_character(shared_data.path(f"characters/{name}"), uv="keep", atlas_size=128)
     teacher = SimulatedTeacher(replace(character, source=None), texels=TEXELS)
     plausible = Plausible(teacher.rig)

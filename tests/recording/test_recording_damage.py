@@ -1,4 +1,4 @@
-"""A recording is gone on from only where it is what its plan's writer left, to the byte."""
+"""A bake goes on from a recording only where it is byte for byte what its plan's writer left."""
 
 import re
 import shutil

@@ -46,7 +46,7 @@ def assert_same(joined: Recording, whole: Recording) -> None:
 
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory: pytest.TempPathFactory) -> Recording:
-    """What one process records, with the defaults of `TeacherWriter`."""
+    """The recording by one process, with the defaults of `TeacherWriter`."""
     directory = tmp_path_factory.mktemp("whole")
     teacher = FormulaTeacher(synthetic_rig())
     with TeacherWriter(directory, teacher.rig, rate=RATE) as writer:

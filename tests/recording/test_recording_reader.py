@@ -1,4 +1,4 @@
-"""Recordings read back: what comes back, what is refused."""
+"""Recordings read back: their values, and errors for damaged ones."""
 
 import json
 import shutil

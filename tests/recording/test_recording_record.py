@@ -1,4 +1,4 @@
-"""Recording a plan: what is resumed, what is held in memory, what is refused."""
+"""Recording a plan: resuming, memory and errors."""
 
 import gc
 import shutil
@@ -106,7 +106,7 @@ def test_memory_does_not_grow_with_the_number_of_frames(tmp_path: Path) -> None:
     def peak(frames: int) -> int:
         planned = [PlannedClip(clip(rig, "walk", frames), held_out=False, wanted=frozenset(range(frames)))]
         with TeacherWriter(tmp_path / str(frames), rig, rate=RATE, shard_frames=4, whole_every=1) as writer:
-            gc.freeze()  # what other tests have left is not looked through again
+            gc.freeze()  # so that the garbage of other tests is not traversed
             tracemalloc.start()
             record(teacher, planned, writer, progress=collect)
             allocated = tracemalloc.get_traced_memory()[1]
@@ -116,7 +116,7 @@ def test_memory_does_not_grow_with_the_number_of_frames(tmp_path: Path) -> None:
 
     peak(4)  # fills caches
     texture = teacher.frame(clip(rig, "walk", 1), 0).texture.nbytes
-    assert peak(96) < peak(16) + texture  # of the 80 frames more not even one is held
+    assert peak(96) < peak(16) + texture  # none of the 80 additional frames is held in memory
 
 
 def test_refuses_another_plan(written: Path, tmp_path: Path) -> None:
@@ -124,9 +124,9 @@ def test_refuses_another_plan(written: Path, tmp_path: Path) -> None:
     rig = synthetic_rig()
     changed = replace(plan(rig)[0], wanted=frozenset({0, 1}))
     slow = PlannedClip(replace(clip(rig, "slow", 3), rate=12.0), held_out=False, wanted=frozenset({0}))
-    for planned, told in (
+    for planned, message in (
         (changed, "clip 'walk' holds other frames than are wanted now"),
         (slow, r"clip 'slow': rate is 12\.0 .* expected 24\.0"),
     ):
-        with opened(tmp_path / "copy") as writer, pytest.raises(InputError, match=told):
+        with opened(tmp_path / "copy") as writer, pytest.raises(InputError, match=message):
             record(FormulaTeacher(rig), [planned], writer)

@@ -1,4 +1,4 @@
-"""Worker processes record what one would, survive kills, and end with the one that started them."""
+"""Worker processes record what a single one would, survive kills, and end with their parent."""
 
 import errno
 import os
@@ -58,7 +58,7 @@ class Refusing(Disturbed):
 
 
 class Waiting(Disturbed):
-    """Says who it is and waits, the first time."""
+    """Writes its process id and waits, the first time."""
 
     def disturb(self) -> None:
         if not self.flag.exists():
@@ -100,11 +100,11 @@ def test_any_number_of_workers_leaves_the_same_files(alone: Path, tmp_path: Path
     assert sorted(heard) == heard
 
 
-def test_a_killed_worker_is_a_sentence_and_the_next_run_ends_in_the_same_files(alone: Path, tmp_path: Path) -> None:
+def test_a_killed_worker_is_reported_and_the_next_run_ends_in_the_same_files(alone: Path, tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"a process that records was ended by signal 9, perhaps for want of memory"):
         run(tmp_path / "r", Dying, tmp_path / "flag")
     assert not is_joined(tmp_path / "r")
-    assert not list(tmp_path.rglob(".*.part"))  # which may be what a full disk is full of
+    assert not list(tmp_path.rglob(".*.part"))  # leftovers may be what fills the disk
     run(tmp_path / "r", Dying, tmp_path / "flag")
     assert content(tmp_path / "r") == content(alone)
 
@@ -160,7 +160,7 @@ def test_an_interrupt_ends_all_workers(tmp_path: Path, monkeypatch: pytest.Monke
 
 
 @pytest.mark.parametrize("joined", [True, False])
-def test_what_was_damaged_is_told_and_recorded_anew(alone: Path, tmp_path: Path, joined: bool) -> None:
+def test_a_damaged_recording_is_reported_and_recorded_again(alone: Path, tmp_path: Path, joined: bool) -> None:
     directory, teacher = tmp_path / "r", FormulaTeacher(synthetic_rig())
     damaged = directory if joined else directory.with_name("r.part-1-of-3")
     if joined:
@@ -168,9 +168,9 @@ def test_what_was_damaged_is_told_and_recorded_anew(alone: Path, tmp_path: Path,
     else:
         record_share(teacher, plan(teacher.rig), directory, rank=0, count=1, rate=RATE)
     (damaged / "shards/00000/whole_00000.npy").unlink()
-    told: list[str] = []
-    run(directory, FormulaTeacher, note=told.append)
-    (sentence,) = told
+    notes: list[str] = []
+    run(directory, FormulaTeacher, note=notes.append)
+    (sentence,) = notes
     assert sentence.startswith(f"{damaged / 'shards/00000/whole_00000.npy'} is missing")
     assert sentence.endswith(". It is recorded again.")
     assert content(directory) == content(alone)
@@ -179,10 +179,10 @@ def test_what_was_damaged_is_told_and_recorded_anew(alone: Path, tmp_path: Path,
 def test_what_an_undisturbed_run_left_is_not_recorded_anew(alone: Path, tmp_path: Path) -> None:
     directory, teacher = tmp_path / "r", FormulaTeacher(synthetic_rig())
     record_share(teacher, plan(teacher.rig), directory, rank=0, count=2, rate=RATE)  # the parts of one of two
-    told: list[str] = []
-    run(directory, FormulaTeacher, note=told.append)
-    run(directory, FormulaTeacher, note=told.append)
-    assert told == []
+    notes: list[str] = []
+    run(directory, FormulaTeacher, note=notes.append)
+    run(directory, FormulaTeacher, note=notes.append)
+    assert notes == []
     assert content(directory) == content(alone)
 
 

@@ -1,4 +1,4 @@
-"""Recordings written: what a kill leaves, which frames and directories are refused."""
+"""Recordings written: the state after a kill, refused frames and directories."""
 
 import errno
 import os
@@ -119,7 +119,7 @@ def test_a_second_writer_is_refused_and_leaves_the_first_ones_frames(tmp_path: P
 def test_every_file_of_a_shard_is_on_the_disk_before_the_shard_has_its_name(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """And the name itself after: so that a loss of power leaves a shard whole or not at all."""
+    """The name is synced after them, so that a loss of power leaves a shard whole or not at all."""
     fsync, rename = os.fsync, Path.rename
     synced: set[int] = set()  # by inode, which a rename keeps
     shards = 0

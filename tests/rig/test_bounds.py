@@ -1,4 +1,4 @@
-"""Boxes hold what the avatar does."""
+"""Boxes contain the avatar's motion."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""docs/examples/own_template.py: arrays in other units and orders become the rig that they mean."""
+"""docs/examples/own_template.py: arrays in other units and orders become the intended rig."""
 
 import numpy as np
 import pytest

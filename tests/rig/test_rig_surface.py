@@ -1,4 +1,4 @@
-"""The stored surface: runs and strips give back what was put in, and blocks are those that a loop finds."""
+"""The stored surface: runs and strips round-trip, and blocks equal those found by a loop."""
 
 from itertools import pairwise
 

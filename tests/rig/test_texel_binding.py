@@ -55,7 +55,7 @@ def test_each_texel_stays_on_its_own_sheet_though_decimation_moves_the_charts_bo
     character = two_sheets()
     template = make_template(character, vertices=60)
     under = build_texel_map(template.mesh, SIZE)
-    assert on_other_joint(character, template, under).any()  # what the texture alone says
+    assert on_other_joint(character, template, under).any()  # the binding by the texture alone
     carried = bind_texels(character, template, size=SIZE)
     assert not on_other_joint(character, template, carried.texels).any()
     assert carried.moved > 0

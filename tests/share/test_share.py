@@ -1,4 +1,4 @@
-"""A shared folder, a single file and the server: what they hold, what they refuse, and that nothing else is reached."""
+"""A shared folder, a single file and the server: content, errors, and that no other file can be reached."""
 
 import base64
 import hashlib
@@ -52,7 +52,7 @@ class Tags(HTMLParser):
 
 
 def share(command: Commands, *arguments: object) -> str:
-    """What mua-share says of its work."""
+    """The printed output of mua-share."""
     ended = command("share", "--reference", *arguments)
     assert ended.status == 0, ended.err
     return ended.out
@@ -172,7 +172,7 @@ def test_an_avatar_that_is_damaged_beside_a_sound_one_is_named(
     assert not output.exists()
 
 
-def test_an_unknown_clip_is_told_before_anything_is_written(
+def test_rejects_an_unknown_clip_before_anything_is_written(
     command: Commands, avatar_file: Path, tmp_path: Path
 ) -> None:
     assert "'jump'" in command("share", avatar_file, "--clip", "jump", "-o", tmp_path / "out").sentence

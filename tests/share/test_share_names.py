@@ -1,4 +1,4 @@
-"""What a shared page is made of, where names, sizes and writing are out of the ordinary."""
+"""Shared pages with unusual names, sizes and scripts."""
 
 import os
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Bases of a branch in closed form: what they leave and tell, and the coefficients that fit them best."""
+"""Bases of a branch in closed form: residuals, reports, and the coefficients that fit them best."""
 
 from pathlib import Path
 
@@ -22,15 +22,15 @@ def geometry(channels: slice, rows: Tensor) -> Bands:
 
 @torch.no_grad()
 def test_bases_come_with_coefficients_and_the_variance_of_a_texel_and_are_kept(tmp_path: Path) -> None:
-    told: list[Progress] = []
+    reports: list[Progress] = []
     solved = []
     for _ in range(2):
         branch = new_student().geometry
         flat, variance = factorize_branch(
-            branch, geometry, frames=FRAMES, settings=SETTINGS, stage="bases", run=run_in(tmp_path, told)
+            branch, geometry, frames=FRAMES, settings=SETTINGS, stage="bases", run=run_in(tmp_path, reports)
         )
         solved.append((flat, variance, branch.ll_basis.clone()))
-    assert [(one.step, one.steps) for one in told] == [(k, branch.channels) for k in range(1, branch.channels + 1)]
+    assert [(one.step, one.steps) for one in reports] == [(k, branch.channels) for k in range(1, branch.channels + 1)]
     assert all(torch.equal(*pair) for pair in zip(*solved, strict=True))
     bands = geometry(slice(0, branch.channels), torch.arange(FRAMES))
     away = [(band - band.mean(0)).square().sum(0) for band in bands]
@@ -53,7 +53,7 @@ def test_coefficients_of_blendshapes_that_are_nearly_alike_are_found() -> None:
 
 @pytest.mark.parametrize("channel", [0, 22])
 def test_samples_count_for_one_on_average(channel: int) -> None:
-    """Whatever unit pictures are measured in; alike where they show nothing."""
+    """In whatever unit pictures are measured; equally where they show nothing."""
     generator = torch.Generator().manual_seed(2)
     shapes = ((1, CHANNELS, 3, 3), (1, 1, CHANNELS, 3, 3), (1, 1, CHANNELS, 6, 6))
     seen = Bands(*(7 * torch.rand(shape, generator=generator) for shape in shapes))

@@ -1,4 +1,4 @@
-"""mua-train: what it leaves, its stages one by one, and what it tells while it runs."""
+"""mua-train: its files, its stages one by one, and its output while it runs."""
 
 import io
 import json
@@ -78,9 +78,9 @@ def test_the_papers_recipe_has_two_stages(written: Path, mua_train: Training) ->
 
 def test_a_repeated_command_repeats_no_step(written: Path, trained: Path, mua_train: Training) -> None:
     before = trained.read_bytes()
-    told = mua_train(written, output=trained).out.splitlines()
-    assert "avatar" in told
-    assert not set(told) & set(STAGE_NAMES)
+    printed = mua_train(written, output=trained).out.splitlines()
+    assert "avatar" in printed
+    assert not set(printed) & set(STAGE_NAMES)
     assert trained.read_bytes() == before
 
 
@@ -133,10 +133,10 @@ def test_without_a_terminal_stages_and_steps_are_lines(monkeypatch: pytest.Monke
     assert lines[1].startswith("  1 of 4, loss 0.5000, 2.0 steps/s")
     assert lines[2].startswith("  2 of 4, loss 0.4000, 2.0 steps/s, ")
     assert lines[2].endswith(" left")
-    assert re.fullmatch(r"  \d+\.\d s", lines[3])  # what the stage took
+    assert re.fullmatch(r"  \d+\.\d s", lines[3])  # the stage's time
 
 
-def test_two_stages_that_take_turns_are_told_apart(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_stages_that_take_turns_are_reported_separately(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(display, "LINE_SECONDS", 0.0)
     file = io.StringIO()
     with Display(Console(file=file)) as shown:
@@ -157,7 +157,7 @@ def test_two_stages_that_take_turns_are_told_apart(monkeypatch: pytest.MonkeyPat
 
 
 @pytest.mark.parametrize("asked", [True, False])
-def test_says_how_busy_a_gpu_is_as_far_as_it_tells(monkeypatch: pytest.MonkeyPatch, asked: bool) -> None:
+def test_says_how_busy_a_gpu_is_if_the_driver_reports_it(monkeypatch: pytest.MonkeyPatch, asked: bool) -> None:
     def utilization(_: torch.device) -> int:
         if not asked:
             raise ModuleNotFoundError("pynvml does not seem to be installed")
@@ -180,9 +180,9 @@ def test_a_gpu_holds_what_fits_into_half_of_what_is_free(monkeypatch: pytest.Mon
 def test_a_check_reports_on_the_recording_and_trains_nothing(
     written: Path, tmp_path: Path, mua_train: Training
 ) -> None:
-    told = mua_train(written, "--check").out
-    assert "walk" in told
-    assert not set(told.splitlines()) & set(STAGE_NAMES)
+    printed = mua_train(written, "--check").out
+    assert "walk" in printed
+    assert not set(printed.splitlines()) & set(STAGE_NAMES)
     assert [path.name for path in tmp_path.iterdir()] == ["a_check.png"]
 
 

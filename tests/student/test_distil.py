@@ -1,4 +1,4 @@
-"""From a recording on disk to a student: which frames, which joints, and a run that is taken up again."""
+"""From a recording on disk to a student: its frames, its joints, and a resumed run."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -24,11 +24,11 @@ from mua.student.model import Student
 from mua.student.settings import Settings
 
 CPU = torch.device("cpu")
-RELATIVE = 1e-5  # of the largest value: a float32 file against the torch student
+RELATIVE = 1e-5  # share of the largest value: a float32 file against the torch student
 
 
 class Heard:
-    """A listener that writes down what it hears."""
+    """A listener that records its calls."""
 
     def __init__(self) -> None:
         self.stages: list[str] = []
@@ -77,7 +77,7 @@ def distilled(source: Recording, directory: Path, heard: Heard) -> Student:
     return distil(source, settings(), device=CPU, directory=directory, report=heard)
 
 
-def test_learns_from_the_training_frames_alone(tmp_path: Path) -> None:
+def test_distils_the_training_frames_alone(tmp_path: Path) -> None:
     source = recording(tmp_path / "recording")
     student = distilled(source, tmp_path / "student", Heard())
     assert source.count() == 2 * 4
@@ -129,7 +129,7 @@ def test_joints_move_the_mesh_themselves_or_through_a_descendant() -> None:
 
 
 def test_decode_is_the_student_where_joints_move_in_their_parents(tmp_path: Path) -> None:
-    """From the pose on: descriptor, MLPs and textures, with a joint whose translation the descriptor tells."""
+    """From the pose on: descriptor, MLPs and textures, with a joint whose translation is in the descriptor."""
     source = recording(tmp_path / "recording")
     student = distilled(source, tmp_path / "student", Heard())
     assert student.encoding.translated == (2,)

@@ -12,7 +12,7 @@ from mua.baking import distillation
 
 
 def shown(monkeypatch: pytest.MonkeyPatch, path: Path, *, seen: int, unseen: int) -> list[str]:
-    """The frames of a sheet of a recording with so many whole frames."""
+    """The frames on the sheet of a recording with this many whole frames."""
     found: list[str] = []
 
     def whole_frames(*, held_out: bool) -> Iterator[str]:

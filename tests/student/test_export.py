@@ -47,7 +47,7 @@ def test_subbands_of_the_avatar_are_the_students() -> None:
 
 
 def test_rows_that_half_precision_cannot_hold_are_exchanged_for_larger_blendshapes() -> None:
-    """What they say together stays, to the last bit: the factors are powers of two."""
+    """Their product stays equal to the last bit, because the factors are powers of two."""
     student = random_student()
     branch = student.appearance
     grown = torch.tensor([1.0, 3e4, 7e6, 0.2])[torch.arange(branch.channels * branch.ranks.total) % 4]

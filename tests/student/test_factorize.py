@@ -43,7 +43,7 @@ def squared_error(x: torch.Tensor, factors: Factors, worth: torch.Tensor | None 
 
 
 def seen(side: int) -> torch.Tensor:
-    """What samples [n, n] count for: some hundredfold, as it is no outer product of lines."""
+    """Weights of samples [n, n]: some a hundredfold, and no outer product of lines."""
     return 10 ** (random(side, side, seed=9) - 1)
 
 

@@ -142,7 +142,7 @@ def test_shares_of_the_mesh_follow_its_vertices() -> None:
 
 
 def smooth(inputs: torch.Tensor, shown: torch.Tensor, fade: float) -> Callable[[torch.Tensor], torch.Tensor]:
-    """What the MLP is taught of `inputs`, as a function of other inputs."""
+    """The smooth function fitted to `inputs`, as a function of other inputs."""
     components = boundless(inputs)
     found = fit_local(inputs, shown, components, limbs_apart(fade), generator=torch.Generator().manual_seed(0))
     return lambda x: found(components(x))

@@ -1,4 +1,4 @@
-"""What no one sees vary: no blendshape is spent on it, and no weight grows over it."""
+"""Invisible variation gets no blendshape, and no weight grows over it."""
 
 from dataclasses import replace
 
@@ -77,7 +77,7 @@ def test_blendshapes_of_rounding_are_left_out(student: Student) -> None:
     assert not student.geometry.ll_basis.any()
 
 
-def test_a_colour_that_changes_is_still_taught(recorded: Recording, student: Student) -> None:
+def test_a_colour_that_changes_keeps_its_blendshapes(recorded: Recording, student: Student) -> None:
     band = torch.as_tensor(recorded.subbands(slice(0, 23), range(recorded.count())).ll[:, COLOUR])
     shapes = student.appearance.ll_basis[:3]
     assert float(shapes.square().sum()) == pytest.approx(float(band.var(0, correction=0).sum()), rel=0.05)

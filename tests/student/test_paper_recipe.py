@@ -55,7 +55,7 @@ def test_the_paper_recipe_is_the_papers() -> None:
         with_recipe(PRESETS["tiny"], "fast")
 
 
-def test_bases_learn_at_the_rate_of_the_mlp_and_nothing_decays(tmp_path: Path) -> None:
+def test_bases_have_the_learning_rate_of_the_mlp_and_nothing_decays(tmp_path: Path) -> None:
     """The first step of Adam moves every weight by its rate, so that two rates end as far apart as they are."""
     students = []
     for lr in (1e-3, 3e-3):

@@ -1,4 +1,4 @@
-"""Where the MLPs are taught: around frames, and where a part is as in another frame."""
+"""Training points of the MLPs: around frames, and where a part is as in another frame."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -33,7 +33,7 @@ def test_an_exchanged_part_is_whole_and_the_rest_is_that_of_one_frame() -> None:
 
 
 def test_an_exchanged_joint_brings_those_within_a_radius_along() -> None:
-    """Of a chain of ten, one joint at the end and up to so many more: never none, never all."""
+    """In a chain of ten, the last joint and up to a radius more: never none, never all."""
     chain = torch.arange(10)[None]
     frames = torch.arange(500.0)[:, None].expand(-1, 10)
     mixed = exchange(frames, chain, 3000, generator=seeded())
@@ -93,7 +93,7 @@ def test_an_mlp_follows_the_users_frames_and_the_others_roughly(tmp_path: Path) 
     assert errors["none"].mean() > 1.5 * errors["all"].mean()
 
 
-def test_an_mlp_taught_exchanged_parts_carries_over_to_limbs_that_move_apart(tmp_path: Path) -> None:
+def test_an_mlp_fitted_to_exchanged_parts_carries_over_to_limbs_that_move_apart(tmp_path: Path) -> None:
     inputs, shown = two_limbs(300, seed=3, together=True)
     unseen, truth = two_limbs(200, seed=4, together=False)
     schedule = Schedule(steps=600, batch=64, lr=3e-3)

@@ -1,4 +1,4 @@
-"""By how much images change with a sample of the subbands, against images of subbands that were changed."""
+"""The change of images with a sample of the subbands, against images of changed subbands."""
 
 from copy import copy
 from dataclasses import replace
@@ -36,10 +36,10 @@ from mua.wavelets import Bands
 
 CPU = torch.device("cpu")
 SIDE = 40  # pixels
-DRAWS = 150  # of random signs
+DRAWS = 150  # images of random signs
 SAMPLING = 0.25  # four standard errors of their mean square, over a channel's samples
-ROUNDING = 32 * float(np.finfo(np.float32).eps)  # of squares that a closed form in single precision leaves
-STEP = {10: 1e-2, 11: 1e-2, 0: 1e-5}  # of the channels that are changed: opacity, red, an offset
+ROUNDING = 32 * float(np.finfo(np.float32).eps)  # share of squares that a closed form in single precision leaves
+STEP = {10: 1e-2, 11: 1e-2, 0: 1e-5}  # by changed channel: opacity, red, an offset
 
 
 class Quiet:
@@ -223,7 +223,7 @@ def test_a_channel_that_no_picture_shows_counts_alike() -> None:
     assert all(bool((own == 1).all()) for own in worth)
 
 
-def test_bases_learn_from_pictures_at_a_rate_of_their_own(
+def test_bases_have_a_learning_rate_of_their_own_with_pictures(
     smooth_recording: Recording, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     students = []
@@ -237,9 +237,9 @@ def test_bases_learn_from_pictures_at_a_rate_of_their_own(
 def test_every_picture_is_reported(
     smooth_recording: Recording, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """And how many there are in a second: here each takes four."""
-    told: list[Progress] = []
+    """With the rate per second: here each takes four."""
+    reports: list[Progress] = []
     monkeypatch.setattr(sensitivity, "time", SimpleNamespace(monotonic=count(0, 4).__next__))
-    measure_sensitivities(smooth_recording, 3, replace(run(tmp_path), report=told.append))
-    assert [(one.step, one.steps) for one in told] == [(1, 3), (2, 3), (3, 3)]
-    assert [one.rate for one in told] == [0.25] * 3
+    measure_sensitivities(smooth_recording, 3, replace(run(tmp_path), report=reports.append))
+    assert [(one.step, one.steps) for one in reports] == [(1, 3), (2, 3), (3, 3)]
+    assert [one.rate for one in reports] == [0.25] * 3

@@ -1,4 +1,4 @@
-"""What each channel's error counts for: one over the spread of its attribute, and nothing where nothing varies."""
+"""The weight of each channel's error: one over the spread of its attribute, and 0 where nothing varies."""
 
 import numpy as np
 import pytest
@@ -12,7 +12,7 @@ SPREADS = {"offset": 0.02, "rotation": 0.3, "scale": 0.5, "opacity": 4.0, "SH": 
 
 
 def variances(spreads: dict[str, float]) -> torch.Tensor:
-    """[23] of attributes whose channels spread alike."""
+    """Variances [23] of attributes whose channels have equal spread."""
     variance = torch.zeros(23)
     for name, spread in spreads.items():
         variance[ATTRIBUTES[name]] = spread**2

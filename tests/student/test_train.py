@@ -63,7 +63,7 @@ def test_each_stage_improves_on_the_one_before(tmp_path: Path) -> None:
     assert (bases < 0.05).all()
     assert (regressed > torch.tensor([0.95, 0.90, 0.85])).all()
     assert (tuned > regressed).all()
-    assert (tuned[1:] > unswept[1:] + 0.005).all()  # of the details, whose factors alternate
+    assert (tuned[1:] > unswept[1:] + 0.005).all()  # for the details, whose factors alternate
 
 
 def test_same_seed_gives_the_same_bytes_and_another_seed_others(tmp_path: Path) -> None:
@@ -98,7 +98,7 @@ def turned_components(*given: Any) -> Components:
 def test_goes_on_where_directions_come_out_the_other_way(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, stage: str, part: str
 ) -> None:
-    """As on another machine or with another number of threads: nothing settles the sign of a singular vector."""
+    """This happens on another machine or with other threads: the sign of a singular vector is arbitrary."""
     monkeypatch.setattr("mua.training.optimise.CHECKPOINT_STEPS", 2)
     monkeypatch.setattr("mua.student.branches.together", one_by_one)  # so that what the kill finds is known
     whole = train_in(tmp_path / "whole", quick()).state_dict()
@@ -190,7 +190,7 @@ def test_joint_targets_measure_the_weighted_texture() -> None:
     assert torch.allclose(targets.coordinates @ targets.expand, flat, atol=1e-2)
 
 
-def test_directions_below_the_rounding_of_a_recording_are_not_taught() -> None:
+def test_directions_below_the_rounding_of_a_recording_are_dropped() -> None:
     branch = random_student().geometry
     generator = torch.Generator().manual_seed(1)
     modes = torch.randn(3, branch.channels * branch.ranks.total, generator=generator)
@@ -237,7 +237,7 @@ def test_few_frames_get_fewer_steps() -> None:
     assert replace(schedule, epochs=math.inf).over(1).steps == 100
 
 
-def test_what_tells_frames_apart_is_kept() -> None:
+def test_keeps_the_directions_that_distinguish_frames() -> None:
     z = torch.randn(400, 4, generator=torch.Generator().manual_seed(0)) * torch.tensor([1.0, 1e-4, 0.1, 0.0])
     assert leading(z).tolist() == [True, False, True, False]
     assert leading(torch.zeros(5, 3)).sum() < 3

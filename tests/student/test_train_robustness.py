@@ -101,16 +101,14 @@ DAMAGES = {
 
 
 @pytest.mark.parametrize("damage", DAMAGES)
-def test_a_damaged_recording_ends_in_a_sentence(
-    written: Path, tmp_path: Path, mua_train: Training, damage: str
-) -> None:
-    how, told = DAMAGES[damage]
+def test_rejects_a_damaged_recording(written: Path, tmp_path: Path, mua_train: Training, damage: str) -> None:
+    how, message = DAMAGES[damage]
     recording, output = Path(shutil.copytree(written, tmp_path / "recording")), tmp_path / "a.muaavatar"
     how(recording)
     output.write_bytes(EARLIER)
-    assert told in mua_train(recording).sentence
+    assert message in mua_train(recording).sentence
     assert not list(tmp_path.rglob("*.part*"))
-    if "whole" not in damage:  # a frame that was kept whole is read to measure the avatar that is there by then
+    if "whole" not in damage:  # a frame kept whole is read to measure the finished avatar
         assert output.read_bytes() == EARLIER
 
 
@@ -144,12 +142,12 @@ PLACES = {
 def test_an_output_that_cannot_be_is_named_before_any_training(
     written: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, mua_train: Training, place: str
 ) -> None:
-    where, told = PLACES[place]
+    where, expected = PLACES[place]
     output = where(tmp_path)
-    if where is read_only and os.geteuid() == 0:  # who may write anywhere: what the system says to others
+    if where is read_only and os.geteuid() == 0:  # root may write anywhere: the system's answer to other users
         monkeypatch.setattr(Path, "touch", refuse)
     ended = mua_train(written, output=output)
-    assert f"{output}: {told.format(parent=output.parent)}" in ended.sentence
+    assert f"{output}: {expected.format(parent=output.parent)}" in ended.sentence
     assert not set(ended.out.splitlines()) & set(STAGE_NAMES)
 
 
@@ -195,15 +193,15 @@ def test_an_avatar_that_finds_no_room_leaves_the_earlier_one_and_all_that_was_tr
     shutil.copytree(trained.with_suffix(".work"), tmp_path / "a.work")
     output.write_bytes(EARLIER)
     with disk_of(trained.stat().st_size - 1):
-        told = mua_train(written).sentence
-    assert f"{output}: cannot be written (File too large); the previous file" in told
+        message = mua_train(written).sentence
+    assert f"{output}: cannot be written (File too large); the previous file" in message
     assert output.read_bytes() == EARLIER
     assert not list(tmp_path.rglob("*.part*"))
     assert not set(mua_train(written).out.splitlines()) & set(STAGE_NAMES)
     assert output.read_bytes() == trained.read_bytes()
 
 
-def test_a_recording_that_finds_no_room_ends_in_a_sentence(written: Path, tmp_path: Path) -> None:
+def test_a_full_disk_while_recording_is_reported(written: Path, tmp_path: Path) -> None:
     with (
         disk_of((written / "shards/00006/sum.npy").stat().st_size - 1),
         pytest.raises(ValueError, match=r"\.npy: cannot be written .*; earlier shards are kept"),
@@ -211,7 +209,7 @@ def test_a_recording_that_finds_no_room_ends_in_a_sentence(written: Path, tmp_pa
         write(tmp_path / "recording")
 
 
-def test_a_gpu_that_is_too_small_ends_in_a_sentence(
+def test_a_gpu_that_is_too_small_is_reported(
     written: Path, monkeypatch: pytest.MonkeyPatch, mua_train: Training
 ) -> None:
     def fail(*_: object, **__: object) -> None:

@@ -1,4 +1,4 @@
-"""tools/check_shaders.py: what it takes for a fault of a shader, and how it ends."""
+"""tools/check_shaders.py: the faults it finds and its exit status."""
 
 import subprocess
 from pathlib import Path

@@ -62,7 +62,7 @@ def test_guid_is_that_of_name_and_path(package: Path) -> None:
     assert "folderAsset: yes" in (package / "Runtime.meta").read_text()
 
 
-def test_tells_missing_changed_and_orphaned(package: Path) -> None:
+def test_reports_missing_changed_and_orphaned(package: Path) -> None:
     gen_meta.write(package)
     (package / "Runtime/Frame.cs.meta").unlink()
     (package / "package.json.meta").write_text("fileFormatVersion: 2\n")

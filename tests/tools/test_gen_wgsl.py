@@ -1,4 +1,4 @@
-"""The shaders for browsers are made of the text that is here, and the tool says which are not."""
+"""The shaders for browsers are made from the text of this checkout, and the tool lists stale ones."""
 
 import shutil
 from pathlib import Path
@@ -41,7 +41,7 @@ def _of_another_text(folder: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("damage", "told"),
+    ("damage", "fault"),
     [
         (_flip, f"{MODULE} is not what the compiler makes"),
         (_of_another_text, f"{MODULE} was made from another text"),
@@ -50,9 +50,9 @@ def _of_another_text(folder: Path) -> None:
     ],
     ids=["code", "text", "missing", "left over"],
 )
-def test_the_check_names_what_is_out_of_date(folder: Path, damage, told: str) -> None:  # type: ignore[no-untyped-def]
+def test_the_check_names_what_is_out_of_date(folder: Path, damage, fault: str) -> None:  # type: ignore[no-untyped-def]
     damage(folder)
-    assert gen_wgsl.faults(folder) == [told]  # and all else is up to date
+    assert gen_wgsl.faults(folder) == [fault]  # and all else is up to date
 
 
 def test_without_slangc_it_is_named(monkeypatch: pytest.MonkeyPatch, folder: Path) -> None:

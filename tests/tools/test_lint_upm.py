@@ -31,7 +31,7 @@ def test_prints_a_line_for_each_fault(packages: list[Path]) -> None:
 
 
 def test_folded_kernels_keep_their_guids(packages: list[Path]) -> None:
-    """As tools/pack_upm.py folds them: below ComputeShaders, with .meta files made for com.mua.kernels."""
+    """tools/pack_upm.py folds them below ComputeShaders, with the .meta files of com.mua.kernels."""
     folder = packages[0] / "ComputeShaders"
     put(folder / "x.compute", "")
     gen_meta.write(packages[0])

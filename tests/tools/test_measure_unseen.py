@@ -30,7 +30,7 @@ from mua.teachers.simulated.teacher import SimulatedTeacher
 
 
 class Stub:
-    """Instead of a simulated teacher: it shows the avatar itself; in a motion called "wrong", in other colours."""
+    """A stand-in for the simulated teacher: the avatar itself, in other colours in a motion called "wrong"."""
 
     def __init__(self, avatar: Avatar) -> None:
         self.character, self._avatar = avatar.rig, avatar
@@ -106,8 +106,8 @@ def test_files_that_the_character_cannot_follow_are_named_and_left_out(
     (tmp_path / "noise.bvh").write_text("no motion")
     motions = list(motions_of(character, [tmp_path / "noise.bvh", tmp_path / "walk.npz"]))
     assert [motion.clip.name for motion in motions] == ["walk"]
-    assert "left out: " in (told := capsys.readouterr().out)
-    assert "noise.bvh" in told
+    assert "left out: " in (printed := capsys.readouterr().out)
+    assert "noise.bvh" in printed
 
 
 def test_teacher_frames_are_those_of_a_bake_and_simulated_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -227,9 +227,9 @@ def test_a_motion_misses_a_bar_beyond_it_and_where_less_than_nothing_is_explaine
     assert replace(good, colour=40.1).fails == ["colour"]
     assert replace(good, explained={**good.explained, "SH": -0.01}).fails == ["SH"]
     report([replace(good, name="bad", size=99.0), good], None)
-    told = capsys.readouterr().out
-    assert "1 of 2 motions meet all bars" in told
-    assert "size: 1 of 2, worst 99.0 texels" in told
+    printed = capsys.readouterr().out
+    assert "1 of 2 motions meet all bars" in printed
+    assert "size: 1 of 2, worst 99.0 texels" in printed
 
 
 def _with_root(avatar: Avatar, root: int) -> Rig:

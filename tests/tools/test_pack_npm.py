@@ -51,7 +51,7 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def compiled(folder: Path, program: str, name: str = "use.ts") -> str:
-    """What tsc says of a program beside the installed package."""
+    """tsc's output for a program beside the installed package."""
     (folder / name).write_text(program)
     line = ["node", str(pack_npm.TSC), "--noEmit", "--strict", "--skipLibCheck", "--module", "ES2022"]
     line += [

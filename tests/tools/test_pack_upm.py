@@ -1,4 +1,4 @@
-"""The tarball holds the package and every kernel byte for byte as Unity takes it, and --check tells what does not."""
+"""The tarball holds the package and every kernel byte for byte as Unity takes it, and --check reports differences."""
 
 import gzip
 import io

@@ -1,4 +1,4 @@
-"""Captures made by a renderer: what it is given, what it skips, what is refused. The renderer itself needs bpy."""
+"""Captures made by a renderer: its job, skipped images and errors. The renderer itself needs bpy."""
 
 import importlib
 import json
@@ -170,7 +170,7 @@ def test_a_python_without_blender_is_named_with_what_to_do(order: Order, tmp_pat
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_renderer_that_fails_is_told_with_its_log(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_renderer_that_fails_is_reported_with_its_log(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     log = tmp_path / "blender.log"
     said = "import sys; print('rendered 1 of 2'); print('Fra:1 Mem'); sys.exit(int(sys.argv[1]))"
     run_renderer([sys.executable, "-c", said, "0"], log=log)

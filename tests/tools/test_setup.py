@@ -58,7 +58,7 @@ def test_the_tests_get_what_they_need(tmp_path: Path) -> None:
     assert "./python[dev] -e ./python/research" in calls
 
 
-def test_an_old_python_is_a_sentence(tmp_path: Path) -> None:
+def test_an_old_python_is_refused(tmp_path: Path) -> None:
     status, calls, errors = set_up("demo", tmp_path, OLD="1")
     assert (status, calls) == (1, "")
     assert "expected 3.11 or later" in errors

@@ -1,4 +1,4 @@
-"""Compilers are found where they are said to be, and slangc's output keeps its meaning in wgpu."""
+"""Compilers are found where the environment points, and slangc's output keeps its meaning in wgpu."""
 
 import sys
 from pathlib import Path
@@ -47,7 +47,7 @@ def test_every_other_selection_stays() -> None:
 
 
 @pytest.mark.parametrize("name", ["glslang", "slang"])
-def test_an_error_is_told_with_the_shaders_name(tmp_path: Path, name: str) -> None:
+def test_an_error_is_reported_with_the_shaders_name(tmp_path: Path, name: str) -> None:
     path = tmp_path / "sum.compute"
     path.write_text(LOOP)
     compiler = shader_compilers.find(name)

@@ -1,4 +1,4 @@
-"""The shaders keep the rules, every broken rule is told, and what is read off their text is what compilers see."""
+"""The shaders keep the rules, every broken rule is reported, and their parsed text agrees with the compilers."""
 
 from pathlib import Path
 
@@ -39,7 +39,7 @@ void Scale(uint thread : SV_GroupIndex, uint3 id : SV_DispatchThreadID)
         scaled[id.x] = twice(shared_values[63 - thread]);
 }
 """
-BAD = [  # what is replaced, by what, and what the fault must say
+BAD = [  # original, replacement, and text of the fault
     ("2 * value", "WaveActiveSum(value)", "WaveActiveSum is a wave or quad intrinsic"),
     ("2 * value", "QuadReadAcrossX(value)", "QuadReadAcrossX is a wave or quad intrinsic"),
     ("float twice", "template<typename T> float twice", "template is a template"),
@@ -115,7 +115,7 @@ def test_a_good_kernel_has_no_fault(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("original", "replacement", "fault"), BAD, ids=[fault for *_, fault in BAD])
-def test_tells_a_broken_rule(tmp_path: Path, original: str, replacement: str, fault: str) -> None:
+def test_reports_a_broken_rule(tmp_path: Path, original: str, replacement: str, fault: str) -> None:
     assert original in GOOD
     found = shader_rules.kernel_faults(written(tmp_path, GOOD.replace(original, replacement)))
     assert any(fault in line for line in found), found
@@ -155,7 +155,7 @@ def test_atomic_additions_need_no_barrier_between_them(tmp_path: Path) -> None:
     assert "no barrier between two uses of shared_value" in shader_rules.kernel_faults(written(tmp_path, text))[0]
 
 
-def test_tells_a_ninth_buffer(tmp_path: Path) -> None:
+def test_reports_a_ninth_buffer(tmp_path: Path) -> None:
     names = [f"source_{n}" for n in range(8)]
     declared = "".join(f"StructuredBuffer<float> {name};\n" for name in names)
     body = "+".join(f"{name}[0]" for name in names)
@@ -165,7 +165,7 @@ def test_tells_a_ninth_buffer(tmp_path: Path) -> None:
     )
 
 
-def test_tells_what_is_wrong_between_files(tmp_path: Path) -> None:
+def test_reports_faults_between_files(tmp_path: Path) -> None:
     first = written(tmp_path, GOOD)
     (tmp_path / "other.compute").write_text(GOOD.replace("<float> source", "<uint> source"))
     second = shader_source.read(tmp_path / "other.compute", tmp_path)
@@ -192,7 +192,7 @@ def test_text_and_compiled_code_agree() -> None:
             assert {(buffer.name, buffer.writable) for buffer in shader.used(entry)} == writable
 
 
-def test_tells_reads_from_writes(tmp_path: Path) -> None:
+def test_distinguishes_reads_from_writes(tmp_path: Path) -> None:
     body = "a[0] = b[c[1]]; d[0] += 1; InterlockedAdd(e[0], 1); f[0].xy = 0; if (a[0] == 1) g[(1 + 2)] = s.b;"
     text = "#pragma kernel Main\n" + "".join(f"RWStructuredBuffer<uint2> {name};" for name in "abcdefg")
     shader = written(tmp_path, f"{text} [numthreads(64, 1, 1)] void Main() {{ {body} }}")
@@ -208,7 +208,7 @@ def test_tells_reads_from_writes(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["glslang", "slang"])
-def test_tells_what_a_compiler_says(tmp_path: Path, name: str) -> None:
+def test_reports_the_message_of_a_compiler(tmp_path: Path, name: str) -> None:
     compiler = shader_compilers.find(name)
     assert compiler is not None
     good = written(tmp_path, GOOD)

@@ -1,4 +1,4 @@
-"""What a virtual capture films: frames, way of the hips, cameras."""
+"""The plan of a virtual capture: frames, path of the hips, cameras."""
 
 from dataclasses import replace
 from itertools import pairwise
@@ -19,7 +19,7 @@ def test_frames_are_spread_over_a_clip_in_runs(frames: int, expected: list[int])
     assert all(run.frames <= RUN for run in runs)
     ends = [100, *(end for run in runs for end in (run.first, run.first + run.frames)), 400]
     gaps = [b - a for a, b in pairwise(ends)][::2]
-    assert not runs or max(gaps) - min(gaps) <= 1  # what is left out lies evenly before, between and after
+    assert not runs or max(gaps) - min(gaps) <= 1  # the frames left out lie evenly before, between and after
 
 
 def test_a_short_clip_gives_all_it_has_and_others_the_rest() -> None:

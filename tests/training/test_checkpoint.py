@@ -1,4 +1,4 @@
-"""Checkpoints are whole, belong to one run, and are nothing where they are damaged."""
+"""Checkpoints are whole, belong to one run, and are ignored where they are damaged."""
 
 import errno
 import io
@@ -50,7 +50,7 @@ def test_ignores_what_is_no_checkpoint(tmp_path: Path, content: bytes) -> None:
 
 
 class Hostile:
-    """What runs a function when it is unpickled without care."""
+    """An object that runs a function when it is unpickled carelessly."""
 
     def __init__(self, made: Path) -> None:
         self.made = made
@@ -90,8 +90,8 @@ class Full(io.RawIOBase):
         return memoryview(content).nbytes
 
 
-def test_a_disk_that_is_full_is_a_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Though torch tells of its archive alone."""
+def test_a_full_disk_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """torch itself reports only a failure of its archive."""
     checkpoints, save = Checkpoints(tmp_path, "a"), torch.save
     checkpoints.save("stage", {"step": 1})
     monkeypatch.setattr(torch, "save", lambda state, _: save(state, Full()))  # type: ignore[arg-type]

@@ -1,4 +1,4 @@
-"""Several processes train the student that one trains, and none waits for one that is gone."""
+"""Several processes distil the student that one distils, and none waits for one that is gone."""
 
 import shutil
 from collections.abc import Iterator
@@ -23,7 +23,7 @@ ROUNDING = 1e-3
 
 @pytest.fixture(scope="module")
 def pair(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """What two processes made of both recipes."""
+    """The results of two processes by both recipes."""
     directory = tmp_path_factory.mktemp("pair")
     assert errors(start("compare", directory), "compare", directory) == ["", ""]
     return directory
@@ -31,7 +31,7 @@ def pair(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def one_thread() -> Iterator[None]:
-    """As the processes have: sums of other lengths turn directions that hold only rounding."""
+    """As in the processes: sums of other lengths turn directions that hold only rounding."""
     threads = torch.get_num_threads()
     torch.set_num_threads(1)
     yield

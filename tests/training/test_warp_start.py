@@ -1,4 +1,4 @@
-"""Starting Warp says nothing of a GPU that is not there, and hides nothing else."""
+"""Starting Warp hides its complaint about a missing GPU, and nothing else."""
 
 import subprocess
 import sys

@@ -92,7 +92,7 @@ def measure(file: Path, rate: float) -> str:
 
 
 def processor_seconds(browser: Browser) -> float:
-    """Of the browser and all its processes."""
+    """Processor time of the browser and all its processes."""
     found = 0
     for stat in Path("/proc").glob("[0-9]*/stat"):
         try:

@@ -29,7 +29,7 @@ from mua.player.frame import AvatarFrame
 from mua.player.splats import SplatFrame
 from mua.student.settings import preset
 
-VISIBLE_WORD = 4  # of the arguments that splat_sort writes
+VISIBLE_WORD = 4  # word of the arguments that splat_sort writes
 
 
 class Recorded:

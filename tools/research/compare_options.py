@@ -193,7 +193,7 @@ def by_channel(band: Tensor) -> Tensor:
 
 
 def read_rows(path: Path, columns: tuple[str, ...]) -> dict[str, list[float]]:
-    """What was measured earlier, of the same columns."""
+    """Rows of earlier measurements with the same columns."""
     if not path.exists():
         return {}
     with path.open(newline="") as file:

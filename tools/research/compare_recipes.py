@@ -40,7 +40,7 @@ from mua.wavelets import Bands
 
 PAPER_STEPS = 1_000_000
 BATCH = 64  # frames of a measurement
-POINTS = 60  # of a curve
+POINTS = 60  # points of a curve
 KINDS = ("training", "held-out")
 STEPS, PROCESSOR, LOSSES = 0, 2, (3, 4)  # columns of a curve
 CPU = torch.device("cpu")
@@ -51,7 +51,7 @@ class Frames:
     """Frames of one kind as a branch sees them."""
 
     inputs: torch.Tensor  # [F, D] normalised descriptors
-    source: Source  # of the branch's channels, counted from 0
+    source: Source  # subbands of the branch's channels, counted from 0
 
 
 @dataclass(frozen=True)
@@ -146,7 +146,7 @@ def follow(task: Task, recording: Recording, settings: Settings, add: Callable[[
         run = Run(torch.Generator().manual_seed(settings.seed), Checkpoints(Path(directory), "compare"), report, CPU)
         fit: Callable[..., None] = fit_branch_from_noise if descends else partial(fit_branch, parts=samples.parts)
         frames = task.kinds["training"]
-        own = run.alone(task.name)  # as train() has it
+        own = run.alone(task.name)  # as in train()
         fit(branch, frames.inputs, frames.source, channels=task.channels, settings=settings, name=task.name, run=own)
 
 

@@ -63,7 +63,7 @@ def main() -> None:
 
 
 def errors(recording: Recording, frames: TrainingFrames, system: NetworkSystem, held_out: bool) -> Errors:
-    """Over the whole frames of one kind."""
+    """Errors over the whole frames of one kind."""
     mean = Picture(frames.mean_texture.numpy(), recording.mean_mesh())
     total = Errors()
     for _, clip in groupby(recording.whole_frames(held_out), key=lambda frame: frame.clip.name):

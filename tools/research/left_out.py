@@ -14,7 +14,7 @@ def left_out(
     recording: Recording,
     leave: list[str],  # names of training clips
 ) -> Tensor:
-    """Which training frames [F], bool, belong to the clips that are left out."""
+    """Training frames [F], bool, of the clips that are left out."""
     training = {clip.name: len(clip.recorded) for clip in recording.clips if not clip.held_out}
     for name in leave:
         if name not in training:

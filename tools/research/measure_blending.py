@@ -17,7 +17,7 @@ from mua.avatar.camera import orbit
 from mua.avatar.decode import decode_clip_frame
 from mua.avatar.rendering import frame_bounds, render_premultiplied, to_bytes
 
-FRAMES = 2  # of each clip
+FRAMES = 2  # frames of each clip
 SCREEN = (480, 720)
 BACKGROUNDS = {"white": 1.0, "black": 0.0}
 

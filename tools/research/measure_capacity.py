@@ -1,4 +1,4 @@
-"""What blendshapes of each kind can hold, whatever predicts their coefficients: explained texture against size.
+"""The capacity of each kind of blendshapes, whatever predicts their coefficients: explained texture against size.
 
     python tools/research/measure_capacity.py RECORDING --preset tiny --frames 375 --frames 1500 -o build/capacity
 
@@ -30,7 +30,7 @@ from mua.student.settings import Ranks, Settings, preset
 from mua.student.targets import channel_weights
 from mua.wavelets import Bands, synthesise_lowpass, waverec2
 
-FACTORS = (0.125, 0.25, 0.5, 1.0, 2.0)  # of the preset's ranks
+FACTORS = (0.125, 0.25, 0.5, 1.0, 2.0)  # factors of the preset's ranks
 COMPONENTS = (1, 2, 4, 8, 16, 24, 32, 48, 64, 96, 128, 192, 256)
 BRANCHES = {"geometry": GEOMETRY, "appearance": APPEARANCE}
 COLOURS = {"ours": "tab:blue", "single-level": "tab:green", "pca-only": "tab:orange", "full-blendshapes": "tab:red"}
@@ -38,12 +38,12 @@ COLOURS = {"ours": "tab:blue", "single-level": "tab:green", "pca-only": "tab:ora
 
 @dataclass(frozen=True)
 class Point:
-    """What a basis of one size explains."""
+    """The variance explained by a basis of one size."""
 
     frames: int
     kind: str
     size: str  # ranks or components
-    numbers: int  # that the basis stores
+    numbers: int  # numbers that the basis stores
     training: float
     held_out: float
 
@@ -207,9 +207,9 @@ def single_level(
 
 def remainder(
     image: Tensor,  # [F, 1, n, n]
-    factors: Factors,  # of one band
+    factors: Factors,  # subbands of one band
 ) -> Tensor:
-    """What is left [F, n, n] of images with their best coefficients."""
+    """The residual [F, n, n] of images with their best coefficients."""
     basis, x = factors.basis().double(), image.flatten(1).double()
     coefficients = x @ torch.linalg.pinv(basis)
     return (x - coefficients @ basis).to(image).unflatten(1, image.shape[2:])

@@ -43,14 +43,14 @@ from mua.splatting.tiles import TILE, assign
 SIDES = 8
 POINTS = 3  # along a side of a pixel
 REACH = 4.0  # deviations; beyond, a Gaussian is below 1/2900
-MOST_ALPHA = 0.99  # of one splat at one pixel, as in 3D Gaussian Splatting
-BACKGROUNDS = (0.0, 1.0)  # of which the worse counts
+MOST_ALPHA = 0.99  # most alpha of one splat at one pixel, as in 3D Gaussian Splatting
+BACKGROUNDS = (0.0, 1.0)  # the worse one counts
 SHOWN = 0.5  # grey behind images
 
 
 @wp.func
 def pixel_integral(x: float, y: float, quad: int, ellipses: wp.array2d[wp.float32], points: wp.array2d[wp.float32]):
-    """Of a Gaussian over the pixel whose middle lies at (x, y) from its own."""
+    """Integral of a Gaussian over the pixel whose middle lies at (x, y) from its own."""
     total = wp.float32(0.0)
     for i in range(POINTS):
         for j in range(POINTS):
@@ -191,7 +191,7 @@ def drawn(
 
 
 def decibels(found: Array, wanted: Array) -> float:
-    """Of the whole image over the worse background."""
+    """Decibels of the whole image over the worse background."""
     over = [[image[..., :3] + grey * (1 - image[..., 3:]) for image in (found, wanted)] for grey in BACKGROUNDS]
     return float(-10 * np.log10(max(np.mean((one - other) ** 2) for one, other in over)))
 

@@ -42,7 +42,7 @@ class Eye:
     half: Array  # [3] of its size, metres
 
     def camera(self, distance: float) -> Camera:
-        """The part of the eye's image that just holds the figure, so many metres before its middle."""
+        """A camera for the part of the eye's image that just holds the figure, at this distance from its middle."""
         c, s = np.cos(AZIMUTH), np.sin(AZIMUTH)
         view = np.eye(4)
         view[:3, :3] = [[c, 0, -s], [0, 1, 0], [s, 0, c]]

@@ -28,7 +28,7 @@ from mua.student.smoother import fit_smoother
 from mua.student.targets import channel_weights
 from mua.wavelets import Bands
 
-STRIDE = 16  # of the samples
+STRIDE = 16  # every n-th sample
 FADES = (1.0, 0.8, 0.7, 0.6, 0.5, 0.3)
 CUTS = (1, 2, 3)
 

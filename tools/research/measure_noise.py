@@ -25,7 +25,7 @@ OTHER_NOISE = 777_777  # added to the seed of each image
 
 
 def rerendered(source: Path, chosen: list[dict[str, Any]], samples: int, blender: str) -> list[np.ndarray]:
-    """The chosen images of a job once more, with other noise and so many samples."""
+    """The chosen images of a job rendered again, with other noise and this many samples."""
     with tempfile.TemporaryDirectory() as scratch:
         folder = Path(scratch)
         for name in ("surface.npz", "texture.png"):

@@ -18,7 +18,7 @@ from mua.avatar.decode import decode_clip_frame
 from mua.baking.evaluate import UNITS
 from mua.channels import ATTRIBUTES
 
-FRAMES = 3  # of each clip
+FRAMES = 3  # frames of each clip
 STORAGES: tuple[Storage, ...] = ("f32", "f16", "i8", "packed")
 
 

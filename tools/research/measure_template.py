@@ -35,7 +35,7 @@ from mua.teachers.trained.motion_deformation import GraphSizes, MotionDeformatio
 from mua.teachers.trained.template_training import Observed, TemplateSettings, fit_template, template_of, training_run
 from mua.training.optimise import Progress
 
-POINTS = 20_000  # of a true surface, in training
+POINTS = 20_000  # points of a true surface, in training
 MEASURED = 60_000  # where distances are measured
 COMPARED = 10_000  # points of the template
 LONGEST = 360  # frames of a clip
@@ -52,7 +52,7 @@ class Frames:
 
 @dataclass(frozen=True, eq=False)
 class Seen:
-    """What the training sees of the frames."""
+    """The frames as the training sees them."""
 
     frames: Frames
     mesh: Mesh

@@ -40,7 +40,7 @@ def away(
     return 1000 * np.linalg.norm(np.concatenate(found), axis=1)
 
 
-def told(teacher: TeacherModel, filmed: Filmed, *, moving: bool) -> str:
+def summary(teacher: TeacherModel, filmed: Filmed, *, moving: bool) -> str:
     """Mean / 95 % on training poses, then in the clips held out."""
     apart = [away(teacher, filmed, clips, moving=moving) for clips in (filmed.clips, filmed.held)]
     return ", ".join(f"{np.mean(one):.1f} / {np.percentile(one, 95):.1f}" for one in apart)
@@ -58,9 +58,9 @@ def main() -> None:
             filmed = read_filmed(
                 open_capture(given.capture), description.settings, torch.device("cpu"), views=Path(views)
             )
-        print(f"{folder}: {told(teacher, filmed, moving=True)}", flush=True)
+        print(f"{folder}: {summary(teacher, filmed, moving=True)}", flush=True)
         teacher.template.deformation = Undeformed(teacher.rig)
-        print(f"{folder}, mean texture: {told(teacher, filmed, moving=False)}", flush=True)
+        print(f"{folder}, mean texture: {summary(teacher, filmed, moving=False)}", flush=True)
 
 
 if __name__ == "__main__":

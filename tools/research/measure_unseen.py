@@ -49,7 +49,7 @@ LOOKED_UP = 256  # points at a time
 
 @dataclass
 class Result:
-    """What one motion shows; of the worst frame, apart from what is explained."""
+    """The figures of one motion, in its worst frame except for the explained variance."""
 
     name: str
     sound: bool
@@ -65,7 +65,7 @@ class Result:
 
     @property
     def badness(self) -> float:
-        """How many times the worst of the bounds."""
+        """The worst figure relative to its bound."""
         return max(self.distance / DISTANCE, self.size / SIZE, self.colour / COLOUR)
 
     @property
@@ -155,7 +155,7 @@ def farthest(
 
 
 def not_nan(value: float) -> float:
-    """What is no number is beyond every bar."""
+    """Count NaN as beyond every bar."""
     return math.inf if math.isnan(value) else float(value)
 
 
@@ -172,7 +172,7 @@ def blocks(texels: TexelMap) -> Array:
 
 
 class Measurement:
-    """One avatar beside its teacher."""
+    """Compares one avatar with its teacher."""
 
     def __init__(self, avatar: Avatar, teacher: Teacher, recording: Recording) -> None:
         self.avatar, self.teacher = avatar, teacher

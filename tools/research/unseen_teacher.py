@@ -50,7 +50,7 @@ class Motion:
 
 @dataclass(frozen=True, eq=False)
 class Shown:
-    """What the teacher shows in one frame."""
+    """The teacher's frame as it is compared."""
 
     frame: int
     mesh: Array  # [V, 3] canonical vertices, metres
@@ -158,7 +158,7 @@ def _lively(avatar: Avatar) -> Array:
 
 
 def _axes(rng: np.random.Generator, *count: int) -> Array:
-    """Unit vectors [..., 3], all directions alike."""
+    """Unit vectors [..., 3], uniformly distributed."""
     axes = rng.normal(size=(*count, 3))
     return np.asarray(axes / np.linalg.norm(axes, axis=-1, keepdims=True))
 

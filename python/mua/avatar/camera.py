@@ -10,15 +10,15 @@ import numpy as np
 from mua.arrays import Array
 
 NEAR = 0.02  # metres, at most
-NEAR_SHARE = 0.01  # of the distance of what is looked at: so near a small figure is seen whole
+NEAR_SHARE = 0.01  # share of the distance to the subject, so that a small figure is not clipped
 FOV = float(np.radians(30))  # vertical; a portrait lens
-EYE_DISTANCE = 0.063  # metres, of an adult
-FILL = 0.92  # of the image's half size, that the framed box reaches
+EYE_DISTANCE = 0.063  # metres, for an adult
+FILL = 0.92  # share of the image's half size that the framed box fills
 
 
 @dataclass(frozen=True, eq=False)
 class Camera:
-    """One eye."""
+    """The camera of one eye."""
 
     view: Array  # [4, 4] world to eye, metres
     projection: Array  # [4, 4] eye to clip
@@ -56,7 +56,7 @@ def orbit(
     elevation: float = 0.0,  # radians; positive looks down
     fov: float = FOV,  # vertical, radians
 ) -> Camera:
-    """Look at the middle of the box from the nearest distance at which all of it is in the image."""
+    """A camera that looks at the middle of the box, from the nearest distance at which all of it is in the image."""
     projection = perspective(fov, aspect=screen[0] / screen[1])
     turn = _pitch(elevation) @ _yaw(-azimuth)
     middle = np.mean(bounds, axis=0)
@@ -74,14 +74,14 @@ def sees(
     camera: Camera,
     box: Array,  # [2, 3] lowest and highest corner, metres
 ) -> bool:
-    """Whether any of the box may be in the image: not all of it lies beyond one side, or before the near plane."""
+    """Whether the box may be in the image: false where all of it lies beyond one side or before the near plane."""
     corners = np.array(np.meshgrid(*np.transpose(box))).reshape(3, -1)
     x, y, z, w = camera.projection @ camera.view @ np.concatenate([corners, np.ones((1, corners.shape[1]))])
     return not any(side.all() for side in (x > w, x < -w, y > w, y < -w, z < -w))
 
 
 def near_plane(distance: float) -> float:
-    """Where the near plane lies of a camera that looks at something so far away; metres."""
+    """Distance in metres of the near plane of a camera that looks at a subject at this distance."""
     return min(NEAR, NEAR_SHARE * distance)
 
 
@@ -89,7 +89,7 @@ def stereo(
     camera: Camera,
     distance: float,  # between the eyes, metres
 ) -> tuple[Camera, Camera]:
-    """A left and a right eye beside each other that look the same way, their middle at the camera."""
+    """A left and a right eye that look the same way, with the camera midway between them."""
     left, right = camera.view.copy(), camera.view.copy()
     left[0, 3] += distance / 2
     right[0, 3] -= distance / 2

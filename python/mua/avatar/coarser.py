@@ -14,14 +14,14 @@ from mua.channels import most_levels
 from mua.limits import GROWTH
 from mua.rig.texel_map import CHIEF, MEMBER, TURNED, TexelMap
 
-REACH = 6.0  # texels: what lies farther apart in space belongs to other surfaces, though it is beside in the texture
-TURN = 1.0  # between quaternions: what is turned farther, or has the other sign, has no part in a mean rotation
+REACH = 6.0  # texels; neighbours in the texture that lie farther apart in space belong to different surfaces
+TURN = 1.0  # largest distance between quaternions that are averaged; larger turns and opposite signs are left out
 
 M = TypeVar("M", bound=Model)
 
 
 def coarsest(avatar: Model) -> int:
-    """The coarsest level that an avatar has, 0 where it has but one."""
+    """The coarsest level of an avatar; 0 where there is only one."""
     if avatar.rig.texels.levels is not None:
         return len(avatar.rig.texels.levels)
     details = max(len(avatar.geometry.details), len(avatar.appearance.details))
@@ -29,7 +29,7 @@ def coarsest(avatar: Model) -> int:
 
 
 def at_level(avatar: M, level: int) -> M:
-    """The avatar with a texture of half as many texels along a side, `level` times, at most `coarsest` of it."""
+    """The avatar with the side of its texture halved `level` times, at most `coarsest` times."""
     if level and avatar.rig.texels.levels is None:
         avatar = with_levels(avatar)
     for _ in range(level):
@@ -49,7 +49,7 @@ def with_levels(avatar: M) -> M:
 
 
 def texel_length(avatar: Model) -> float:
-    """The side of a texel on the surface, metres: of all of the template in equal parts; 0 without texels."""
+    """Side of a texel on the surface in metres, the template's area divided among its texels; 0 without texels."""
     if avatar.rig.texels.length is not None:
         return avatar.rig.texels.length
     a, b, c = np.swapaxes(avatar.coarse.mean[avatar.rig.mesh.faces].astype(float), 0, 1)
@@ -79,7 +79,7 @@ def _decide(avatar: Model) -> Array:
 
 
 def _coarser(avatar: M) -> M:
-    """The next level."""
+    """The next coarser level."""
     texels, statics = avatar.rig.texels, avatar.geometry.static.astype(float)
     kept, members, turned = texels.gathered()
     points, count = _points(avatar), (members >= 0).sum(axis=1)

@@ -36,7 +36,9 @@ class Splats:
     texel_dq: Array  # [N, 8] bind pose to world; the real part is R_tex
     bounds: Array  # [2, 3] lowest and highest corner of the box over which depth is keyed
     outside: float = 0.0  # share of the pose that training did not show (schemas/README.md, 3.7)
-    normals: Array | None = None  # [N, 3] of the triangles of one-sided texels, of any length, 0 of others; None: all 0
+    normals: Array | None = (
+        None  # [N, 3] normals of one-sided texels' triangles, not normalised, 0 for others; None: all 0
+    )
 
     def __len__(self) -> int:
         return len(self.centres)
@@ -52,7 +54,7 @@ def decode(
     translations: Array,  # [k, J, 3] local joint translations, metres
     dtype: npt.DTypeLike = np.float32,
 ) -> Splats:
-    """Decode the newest frame of a window of poses; float64 is the reference of the reference."""
+    """Decode the newest frame of a window of poses; float64 gives the most exact reference."""
     descriptor = describe_window(avatar.rig.skeleton, avatar.encoding, rotations, translations)
     read, outside = read_components(avatar.components, descriptor)
     x = read.astype(dtype)
@@ -120,7 +122,7 @@ def pose_splats(
     *,
     texture: Array,  # [N, 23] raw channels at the valid texels; its dtype is that of the frame
     pose: Pose,
-    bounds: Array | None = None,  # [2, 3] of the splats about the root joint, metres; their own box if left out
+    bounds: Array | None = None,  # [2, 3] box of the splats about the root joint, metres; their own box if left out
 ) -> Splats:
     """Skin mesh and texture, a student's or a teacher's, into the world."""
     dtype = texture.dtype
@@ -152,7 +154,7 @@ def texel_normals(
     canonical: Array,  # [V, 3] canonical vertices
     texel_dq: Array,  # [N, 8] bind pose to world
 ) -> Array:
-    """Normals [N, 3] of the texels' triangles in the world, of any length; 0 where it is known to be two-sided."""
+    """Normals [N, 3] of the texels' triangles in the world, not normalised; 0 for two-sided texels."""
     a, b, c = np.swapaxes(canonical[rig.mesh.faces[rig.texels.triangles]], 0, 1)
     normals = rotation.rotate(texel_dq[:, :4], np.cross(b - a, c - a))
     return normals if rig.texels.one_sided is None else normals * rig.texels.one_sided[:, None]

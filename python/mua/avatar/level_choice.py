@@ -1,4 +1,4 @@
-"""At which level of detail avatars are shown: by the size of their texels on the screen, and by what all may cost.
+"""The choice of avatars' levels of detail by the size of their texels on the screen and a budget of splats.
 
 unity-package/Runtime/LevelChoice.cs and web/level_choice.js choose alike; tests/golden/level_choice.json holds all to
 it.
@@ -12,13 +12,13 @@ import numpy as np
 from mua.arrays import Array
 from mua.avatar.camera import Camera
 
-LARGEST_TEXEL = 0.65  # pixels along a side, up to which a texel is hardly told from a smaller one
-HYSTERESIS = 1.15  # times: texels must look so much larger before a finer level comes back
+LARGEST_TEXEL = 0.65  # pixels along a side; texels up to this size look the same as smaller ones
+HYSTERESIS = 1.15  # factor by which texels must look larger before a finer level returns
 
 
 @dataclass(frozen=True)
 class Seen:
-    """An avatar before the eyes."""
+    """An avatar as the eyes see it."""
 
     distance: float  # metres
     texel: float  # pixels along a side of a texel of its finest level
@@ -27,9 +27,9 @@ class Seen:
 
 
 def texel_pixels(
-    length: float,  # of a texel, metres
-    box: Array,  # [2, 3] of the avatar in the world, metres
-    cameras: Sequence[Camera],  # of one eye or two
+    length: float,  # side of a texel, metres
+    box: Array,  # [2, 3] the avatar's box in the world, metres
+    cameras: Sequence[Camera],  # one or two eyes
 ) -> tuple[float, float]:
     """Metres of the box from the middle of the eyes, and pixels along a side of a texel at its nearest point."""
     camera = cameras[0]

@@ -1,4 +1,4 @@
-"""What of an avatar is decoded: its rig, its descriptor, its MLPs and the subbands that these drive, as numpy arrays.
+"""What decoding an avatar needs: its rig, its descriptor, its MLPs and the subbands they drive, as numpy arrays.
 
 Spatial tensors are channel-first: a GPU reads them plane by plane.
 """
@@ -73,12 +73,12 @@ class Wavelet:
     levels: int  # 4
     rec_lo: Array  # [L] float64
     rec_hi: Array  # [L] float64
-    coarser: int = 0  # times that the texture's blocks of 2 x 2 texels become one (mua.avatar.coarser)
+    coarser: int = 0  # how often blocks of 2 x 2 texels were merged (mua.avatar.coarser)
 
 
 @dataclass(frozen=True, eq=False)
 class Model:
-    """All that becomes splats, given a window of poses."""
+    """Everything that turns a window of poses into splats."""
 
     rig: Rig
     encoding: PoseEncoding

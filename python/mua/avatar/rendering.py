@@ -21,7 +21,7 @@ from mua.kernels.splat_project import splat_project
 from mua.kernels.splat_sort import splat_sort
 
 WHITE = (1.0, 1.0, 1.0)
-SIZE = (640, 960)  # pixels of an image: upright, as people stand
+SIZE = (640, 960)  # width and height in pixels: upright, as people stand
 LARGEST = 8192  # pixels along a side
 
 
@@ -50,7 +50,7 @@ def render(
     `azimuth` the degrees by which it goes round to the avatar's left, 0 being the front of the bind pose, and
     `elevation` the degrees from which it looks down. `background` is a colour name or `#rrggbb`.
 
-    Errors: InputError for a size, an angle or a colour that is none, and where a camera comes with a size or an angle.
+    Errors: InputError for a size, an angle or an unknown colour, and where a camera comes with a size or an angle.
 
     Example:
 
@@ -82,7 +82,7 @@ def render_premultiplied(
     splats: Splats,
     camera: Camera,
     *,
-    encode: Callable[[Array], Array] = np.asarray,  # of the splats' sRGB [M, 3] to what is blended
+    encode: Callable[[Array], Array] = np.asarray,  # from the splats' sRGB [M, 3] to what is blended
 ) -> Array:
     """Premultiplied sRGB, or what `encode` makes of it, and alpha [H, W, 4], float64."""
     seen = projected(splats, camera)

@@ -1,1 +1,1 @@
-"""What a frame costs on a device: time by kernel beside the bytes and operations that it must take."""
+"""What a frame costs on a device: time by kernel beside the bytes it moves and the operations it computes."""

@@ -1,4 +1,4 @@
-"""What a frame of an avatar must do on any device: bytes, operations and dispatches, triangles and fragments.
+"""Work of a frame of an avatar on any device: bytes, operations and dispatches, triangles and fragments.
 
 Dispatches are those that the player appends; fragments are counted by drawing.
 """
@@ -25,15 +25,15 @@ from mua.player.splats import SplatFrame
 from mua.pose.clip import Clip
 from mua.pose.resample import resample
 
-SCREEN = (1680, 1760)  # pixels of one eye, as a Quest 3 has them unless told otherwise
+SCREEN = (1680, 1760)  # pixels of one eye: the default of a Quest 3
 FOCAL = 790  # pixels
 DISTANCES = (2.2, 1.0, 0.6)  # metres from the figure's middle
-VISIBLE_WORD = 4  # of the arguments that splat_sort writes
+VISIBLE_WORD = 4  # word of the arguments that splat_sort writes: how many splats some eye sees
 
 
 @dataclass(frozen=True)
 class Drawn:
-    """What is drawn for one eye from one distance."""
+    """The draw for one eye from one distance."""
 
     distance: float  # metres
     triangles: int
@@ -67,11 +67,11 @@ class LevelCounts:
 
 @dataclass(frozen=True)
 class Counts:
-    """Of one avatar before one eye, all of whose splats are in view."""
+    """Counts for one avatar before one eye, with all its splats in view."""
 
     avatar: str
     splats: int
-    decode: tuple[Part, ...]  # from a window of poses to mesh and channels, each in another displayed frame
+    decode: tuple[Part, ...]  # from a window of poses to mesh and channels, one displayed frame each
     pose: Part  # from these to sorted splats, in every displayed frame that poses
     rest: int  # dispatches of a frame in which only the camera moves
     drawn: tuple[Drawn, ...]
@@ -79,7 +79,7 @@ class Counts:
 
     @property
     def kernels(self) -> dict[str, Work]:
-        """Of a frame that decodes all, by entry point."""
+        """Work of a frame that decodes everything, by entry point."""
         spent: dict[str, Work] = {}
         for part in (*self.decode, self.pose):
             for name, work in part.kernels.items():
@@ -88,7 +88,7 @@ class Counts:
 
     @property
     def peak(self) -> Work:
-        """Of the displayed frame that moves most bytes."""
+        """Work of the displayed frame that moves most bytes."""
         return self.pose.work + max((part.work for part in self.decode), key=lambda work: work.bytes)
 
     @property
@@ -99,7 +99,7 @@ class Counts:
 
 
 def count(device: Device, path: Path) -> Counts:
-    """Errors: InputError where the file holds no clip, or the device cannot hold the avatar or the image."""
+    """Count a frame. Errors: InputError where the file holds no clip, or the device cannot hold avatar or image."""
     buffers = AvatarBuffers(device, path)
     avatar = buffers.avatar
     if not avatar.clips:
@@ -154,7 +154,7 @@ def as_json(counts: Counts) -> dict[str, Any]:
 
 
 def fragments(device: Device, splats: SortedSplats, camera: Camera) -> Array:
-    """How many splats are drawn at each pixel, [H, W]. Errors: InputError where the device cannot count so far."""
+    """How many splats are drawn at each pixel, [H, W]. Errors: InputError where the device cannot blend floats."""
     if image_format(device) != EXACT_FORMAT:
         raise InputError(f"{device.adapter}: the device does not blend floats, by which fragments are counted")
     renderer = SplatRenderer(device, EXACT_FORMAT, fragment="CountFrag")
@@ -162,7 +162,7 @@ def fragments(device: Device, splats: SortedSplats, camera: Camera) -> Array:
 
 
 def _part(bound: Sequence[Bound], share: float) -> Part:
-    """Dispatches where some eye sees this share of the splats."""
+    """The work of dispatches where some eye sees this share of the splats."""
     return Part(by_kernel(bound, share=share), len(bound))
 
 
@@ -219,7 +219,7 @@ def eye_before(
     azimuth: float,
     distance: float,
 ) -> Camera:
-    """Before the figure's front, level with its middle."""
+    """An eye in front of the figure, level with its middle."""
     camera = orbit(bounds, screen=SCREEN, azimuth=azimuth)
     view, projection = camera.view.copy(), camera.projection.copy()
     view[:3, 3] = [0, 0, -distance] - view[:3, :3] @ bounds.mean(axis=0)

@@ -1,4 +1,4 @@
-"""Devices for the model of a frame: what is published about each, and what is assumed where nothing is."""
+"""Devices for the frame model: published figures, and assumptions where nothing is published."""
 
 from dataclasses import dataclass
 
@@ -7,7 +7,7 @@ from mua.errors import InputError
 
 @dataclass(frozen=True)
 class Range:
-    """A number that is not known well."""
+    """An uncertain number between two bounds."""
 
     best: float  # makes the frame shortest
     likely: float
@@ -16,21 +16,21 @@ class Range:
 
 @dataclass(frozen=True)
 class ModelDevice:
-    """What decides how long a frame takes."""
+    """The rates that decide how long a frame takes."""
 
     title: str
-    bandwidth: float  # of the memory, GB/s
+    bandwidth: float  # memory bandwidth, GB/s
     copy: Range  # share of it that kernels reach
     peak: float  # TFLOPS, float32, a multiply-add as two
     compute: Range  # share of it that kernels reach
-    shading: Range  # share of half of it, as instructions, that fragments reach
+    shading: Range  # share of half the rate, as instructions, that fragments reach
     clock: float  # GHz
-    triangles: Range  # a clock
-    pixels: Range  # blended in a clock
-    passes: int  # over the triangles: two where a pass sorts them into tiles
+    triangles: Range  # per clock
+    pixels: Range  # blended per clock
+    passes: int  # passes over the triangles: two where one sorts them into tiles
     rest: Range  # milliseconds of a frame for everything else: render pipeline, resolve
     sources: tuple[str, ...]
-    assumed: str  # what has no source
+    assumed: str  # figures without a source
 
 
 DEVICES = {
@@ -102,7 +102,7 @@ DEVICES = {
 
 
 def model_device(name: str) -> ModelDevice:
-    """Errors: InputError where there is none of this name."""
+    """The device of this name; raises InputError where there is none."""
     if name not in DEVICES:
         raise InputError(f"--model is {name!r}; expected one of {', '.join(DEVICES)}")
     return DEVICES[name]

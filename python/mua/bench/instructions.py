@@ -12,11 +12,11 @@ from mua.player.draw import SHADER
 # Opcodes and instructions of GLSL.std.450: SPIR-V specification 1.6, section 3.49.13, and its extended instructions.
 OP_EXTENDED, OP_FIRST_ARITHMETIC, OP_DIVIDE, OP_DOT, OP_LAST_ARITHMETIC = 12, 126, 136, 148, 152
 SLOW_EXTENDED = frozenset({*range(13, 33)})  # sines to roots, exponentials and logarithms among them
-SLOW = 4  # instructions for one of those, or for a division: units for them are a quarter as many
+SLOW = 4  # instructions for one of those or a division: GPUs have a quarter as many units for them
 
 
 def fragment_instructions() -> int:
-    """Of the player's fragment of a splat, as it is compiled."""
+    """Instructions of the player's compiled fragment shader of a splat."""
     return count_instructions(compile.spirv(sources.find(SHADER), "SplatFrag", stage="frag"))
 
 
@@ -39,7 +39,7 @@ def count_instructions(code: bytes) -> int:
 
 
 def _weight(opcode: int, operands: list[int]) -> int:
-    """Instructions for one component; 0 of what computes nothing."""
+    """Instructions for one component; 0 for opcodes that compute nothing."""
     if opcode == OP_EXTENDED:
         return SLOW if operands[3] in SLOW_EXTENDED else 1
     if OP_FIRST_ARITHMETIC <= opcode <= OP_LAST_ARITHMETIC:

@@ -1,4 +1,4 @@
-"""Time on a device: every kernel of a frame, the drawing, and a large copy to hold them against."""
+"""Time on a device: every kernel of a frame, the drawing, and a large copy to compare them with."""
 
 from collections import defaultdict
 from collections.abc import Callable
@@ -26,7 +26,7 @@ from mua.pose.resample import resample
 WARM_UP = 3  # frames before the first that counts
 COPIED = 128 << 20  # bytes of the copy; more than any cache holds
 COPIES = 5
-VISIBLE_WORD = 4  # of the arguments that splat_sort writes: how many splats some eye sees
+VISIBLE_WORD = 4  # word of the arguments that splat_sort writes: how many splats some eye sees
 
 
 @dataclass(frozen=True)
@@ -34,13 +34,13 @@ class Timing:
     """Milliseconds of a kernel over frames."""
 
     median: float
-    low: float  # a tenth of the frames is faster
-    high: float  # a tenth of the frames is slower
+    low: float  # a tenth of the frames are faster
+    high: float  # a tenth of the frames are slower
 
 
 @dataclass(frozen=True)
 class Measured:
-    """What one avatar costs on one device."""
+    """The cost of one avatar on one device."""
 
     device: str
     avatar: str
@@ -51,12 +51,12 @@ class Measured:
     frames: int
     copy_bandwidth: float  # bytes a second, read and written
     kernels: dict[str, Timing]  # in frame order
-    work: dict[str, Work]  # of the same kernels
+    work: dict[str, Work]  # by the same kernels
     draw: Timing  # vertices and fragments of all eyes
 
 
 def measure(device: Device, path: Path, *, frames: int, screen: tuple[int, int], eyes: float | None) -> Measured:
-    """Play `frames` frames of the first clip of the file at `path`; `eyes` are metres between two eyes.
+    """Play `frames` frames of the first clip of the file at `path`; `eyes` is the distance between two eyes in metres.
 
     Errors: InputError where the device has no timestamps or too little memory, or the file no clip.
     """
@@ -71,7 +71,7 @@ def measure(device: Device, path: Path, *, frames: int, screen: tuple[int, int],
     bandwidth = copy_bandwidth(device)
     frame = SplatFrame(device, [AvatarFrame(device, buffers)])
     spent, visible = _compute_frames(device, frame, clip, shots, frames)
-    drawn = _draw_frames(device, frame, clip, shots, frames)  # after all computing, see there
+    drawn = _draw_frames(device, frame, clip, shots, frames)  # after all computing, for the reason given there
     work = by_kernel(_compute(device, frame, clip, shots, 0).bound, share=visible / frame.splat_count)
     return Measured(
         device=str(device.adapter),
@@ -123,7 +123,7 @@ def _draw_frames(
 ) -> list[float]:
     """Milliseconds of drawing every counted frame.
 
-    Once an image was drawn, Mesa's lavapipe puts timestamps off to the next barrier: a kernel's time would then count
+    After an image was drawn, Mesa's lavapipe puts timestamps off to the next barrier: a kernel's time would then count
     for the kernel after it.
     """
     renderer = SplatRenderer(device, IMAGE_FORMAT)

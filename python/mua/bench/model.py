@@ -19,10 +19,10 @@ from mua.bench.devices import ModelDevice
 from mua.bench.work import PROJECT_EYE, Work
 
 ENDS = ("best", "likely", "worst")
-TRIANGLES = 2  # of a splat
+TRIANGLES = 2  # triangles of a splat
 # A triangle that is half of a square of side s has the perimeter (2 + sqrt 2) s, and a convex shape turned at random is
 # on average as wide as its perimeter over pi. Grown by a pixel along either axis, it covers as much as the blocks do.
-BLOCK_EDGE = TRIANGLES * 2 * (2 + np.sqrt(2)) / np.pi  # of both triangles, for each unit of s
+BLOCK_EDGE = TRIANGLES * 2 * (2 + np.sqrt(2)) / np.pi  # fragments of both triangles per unit of s
 BLOCK_CORNER = TRIANGLES  # pixels
 FIXED = 16  # instructions of a fragment for interpolation and blending, assumed
 
@@ -31,8 +31,8 @@ FIXED = 16  # instructions of a fragment for interpolation and blending, assumed
 class Stages:
     """Milliseconds of a displayed frame."""
 
-    decode: float  # of all parts
-    part: float  # of a decode: that which takes longest, in a displayed frame of its own
+    decode: float  # decode of all parts
+    part: float  # the longest part of a decode that is spread over displayed frames
     pose: float  # to sorted splats
     triangles: float
     fragments: float
@@ -40,23 +40,23 @@ class Stages:
 
     @property
     def plain(self) -> float:
-        """Of a frame that does not decode."""
+        """Milliseconds of a frame that does not decode."""
         return self.pose + self.triangles + self.fragments + self.rest
 
     @property
     def spread(self) -> float:
-        """Of a frame that decodes one part."""
+        """Milliseconds of a frame that decodes one part."""
         return self.part + self.plain
 
     @property
     def whole(self) -> float:
-        """Of a frame that decodes everything."""
+        """Milliseconds of a frame that decodes everything."""
         return self.decode + self.plain
 
 
 @dataclass(frozen=True)
 class Modelled:
-    """One avatar or several from one distance."""
+    """Times for one or several avatars from one distance."""
 
     distance: float  # metres
     avatars: int

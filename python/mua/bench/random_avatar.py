@@ -28,20 +28,20 @@ from mua.rig.triangulate import triangulate
 from mua.student.settings import Ranks, Settings
 
 HEIGHT, RADIUS = 1.7, 0.18  # metres
-HOLE = 0.02  # of the radius, at both ends, so that no triangle is without area
+HOLE = 0.02  # share of the radius left at both ends, so that no triangle has zero area
 RINGS, SPOKES = 102, 54  # 5,508 vertices; the template of the paper's family has 5,514
 JOINTS = 54  # all of them encoded, as in the family's released character
-VALID = 300_000 / 768**2  # of the texels (paper, Animatable Coarse Geometry)
+VALID = 300_000 / 768**2  # share of the texels that are valid (paper, Animatable Coarse Geometry)
 WAVELET = "bior4.4"
 ENCODING = PoseEncoding(joints=tuple(range(1, JOINTS)), rate=25.0)
-FRAMES = 50  # of the clip
-FARTHEST = 100.0  # of a component
+FRAMES = 50  # frames of the clip
+FARTHEST = 100.0  # standard deviation of a component
 SWING = 0.02  # radians of one joint; 53 of them bend the tube by at most 60 degrees
-OFFSET, TURN, SPREAD, LOGIT, SHADE = 0.003, 0.05, 0.1, 0.3, 0.2  # deviations of the channels that move
+OFFSET, TURN, SPREAD, LOGIT, SHADE = 0.003, 0.05, 0.1, 0.3, 0.2  # standard deviations of the moving channels
 
 
 def random_avatar(settings: Settings) -> Avatar:
-    """The same avatar for the same arguments; it is not trained, only as large and as visible as one that is."""
+    """An untrained avatar, as large and as visible as a trained one; equal arguments give equal avatars."""
     rng = np.random.default_rng(0)
     rig = _rig(settings.texels)
     vertices = rig.mesh.vertices.astype(np.float32)
@@ -71,7 +71,7 @@ def random_avatar(settings: Settings) -> Avatar:
 
 
 def _components() -> Components:
-    """As many as the descriptor has numbers, the most that an avatar has; no pose of the clip leaves their ranges."""
+    """As many components as the descriptor has numbers, the maximum; no pose of the clip leaves their ranges."""
     directions = np.eye(ENCODING.width, dtype=np.float32)
     zeros, ones = (make(ENCODING.width, np.float32) for make in (np.zeros, np.ones))
     return Components(Normalization(zeros, ones), directions, FARTHEST * np.stack([-ones, ones]), ones)
@@ -102,7 +102,7 @@ def _tube() -> Mesh:
     quarter = np.pi / 2 * RADIUS
     length = HEIGHT - 2 * RADIUS + 2 * quarter
     along = np.linspace(HOLE * RADIUS, length - HOLE * RADIUS, RINGS)
-    inwards = np.minimum(along, length - along)  # from the nearer end
+    inwards = np.minimum(along, length - along)  # distance from the nearer end
     turn = np.minimum(inwards / RADIUS, np.pi / 2)
     rise = RADIUS * (1 - np.cos(turn)) + np.maximum(inwards - quarter, 0)
     height, angle = np.meshgrid(
@@ -141,7 +141,7 @@ def _branch(
     rig: Rig,
     settings: Settings,
     ranks: Ranks,
-    means: Sequence[float],  # [C] of the texture's channels
+    means: Sequence[float],  # [C] means of the texture's channels
     spreads: Sequence[float],  # [C] their deviations
 ) -> Branch:
     """Bands whose deviation is the channel's; a constant gains two per level through the analysis."""

@@ -1,4 +1,4 @@
-"""What was measured, as JSON."""
+"""The measurements as JSON."""
 
 from dataclasses import asdict
 from typing import Any
@@ -8,7 +8,7 @@ from mua.bench.work import Work
 
 
 def rate(amount: int, milliseconds: float) -> float:
-    """Amount a second; 0 where the device's clock saw no time pass."""
+    """Amount per second; 0 where the device's clock saw no time pass."""
     return amount / (1e-3 * milliseconds) if milliseconds > 0 else 0.0
 
 

@@ -15,7 +15,7 @@ from mua.kernels.inverse_dwt import BATCH, ROWS, plane_bytes
 FLOAT = UINT = 4  # bytes
 HALF = 2
 DUAL_QUATERNION = 8 * FLOAT  # bytes
-SPLAT, CENTRE = 32, 16  # bytes: of a splat that some eye sees, and of another
+SPLAT, CENTRE = 32, 16  # bytes written for a splat that some eye sees, and for one that none sees
 KEY = 2  # bytes
 INFLUENCES = 8
 SORT_GROUP = 2048  # keys that share one histogram
@@ -39,7 +39,7 @@ PROJECT_SHARED = 27 + 11  # packed colours; key
 
 @dataclass(frozen=True)
 class Work:
-    """What a dispatch, or several, must do in one frame."""
+    """The work of one or several dispatches in one frame."""
 
     bytes: int
     flops: int
@@ -144,8 +144,8 @@ def scatter_digits(dispatch: Bound, share: float) -> Work:
     return Work(read + UINT * visible + _histograms(count) + UINT * DIGITS, 0)
 
 
-Formula = Callable[[Bound, float], Work]  # of a dispatch and the share of the splats that some eye sees
-DECODING: dict[str, Formula] = {  # once for a pose of the clip, to mesh and channels
+Formula = Callable[[Bound, float], Work]  # work of a dispatch, given the share of the splats that some eye sees
+DECODING: dict[str, Formula] = {  # once for each pose of the clip: from pose to mesh and channels
     "MlpMatmul": mlp_matmul,
     "MlpMatmulTransposed": mlp_matmul,
     "BlendLl": blend_ll,
@@ -153,7 +153,7 @@ DECODING: dict[str, Formula] = {  # once for a pose of the clip, to mesh and cha
     "InverseDwt": inverse_dwt,
     "UpsampleTexels": upsample_texels,
 }
-POSING: dict[str, Formula] = {  # in every displayed frame, to sorted splats
+POSING: dict[str, Formula] = {  # in every displayed frame: from there to sorted splats
     "BlendVertices": blend_vertices,
     "SplatProject": splat_project,
     "CountDigits": count_digits,
@@ -163,7 +163,7 @@ POSING: dict[str, Formula] = {  # in every displayed frame, to sorted splats
 
 
 def _keys(dispatch: Bound, share: float) -> tuple[int, int, int]:
-    """Of one pass: bytes of the keys or elements that are read, how many those are, and how many are kept."""
+    """One sorting pass: bytes of the keys or elements it reads, their number, and how many it keeps."""
     keys, second_pass = _constants(dispatch, "key_count", "second_pass")
     visible = round(share * keys)
     return (UINT * visible, visible, visible) if second_pass else (KEY * keys, keys, visible)
@@ -178,7 +178,7 @@ def _constants(dispatch: Bound, *names: str) -> tuple[int, ...]:
 
 
 def _bound(dispatch: Bound, *names: str) -> int:
-    """Bytes of buffers as they are stored, the scales of i8 rows included."""
+    """Bytes of stored buffers, including the scales of i8 rows."""
     return sum(dispatch.sizes[name] for name in names)
 
 

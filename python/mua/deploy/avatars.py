@@ -26,7 +26,7 @@ class Checked:
 def check(paths: list[Path]) -> list[Checked]:
     """Files that the player will be able to read.
 
-    Errors: InputError naming the file that is unsound, has another suffix or a name that the player cannot be told.
+    Errors: InputError naming the file that is unsound, has another suffix or a name that the player cannot be given.
     """
     checked: list[Checked] = []
     for path in paths:
@@ -56,7 +56,7 @@ def push(headset: Headset, avatar: Checked) -> int:
         headset.tell("mv", "-f", partial, target)
         _require_size(headset, target, len(content))
     except BaseException:
-        with suppress(InputError):  # the first failure is the one to tell
+        with suppress(InputError):  # report the first failure, not that of deleting
             headset.tell("rm", "-f", partial)
         raise
     return len(content)

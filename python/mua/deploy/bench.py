@@ -1,4 +1,4 @@
-"""What frames of one avatar cost on the headset, from the compositor's lines while the player plays it."""
+"""The cost of an avatar's frames on the headset, from the compositor's lines while the player plays it."""
 
 from collections.abc import Iterable
 from contextlib import closing
@@ -13,12 +13,12 @@ from mua.deploy.steady import LEVEL, steady
 from mua.errors import InputError
 
 MARK = "MUA-BENCH"
-ENOUGH = 0.8  # of the seconds must have a line
+ENOUGH = 0.8  # share of the seconds that must have a line
 
 
 @dataclass(frozen=True)
 class Spread:
-    """One figure over all samples."""
+    """Statistics of one figure over all samples."""
 
     minimum: float
     median: float
@@ -27,7 +27,7 @@ class Spread:
 
 @dataclass(frozen=True)
 class Benched:
-    """One avatar on one headset."""
+    """The measurement of one avatar on one headset."""
 
     avatar: str
     serial: str
@@ -96,7 +96,7 @@ def warnings(benched: Benched) -> list[str]:
 
 
 def as_json(benched: Benched) -> dict[str, object]:
-    """What is written to a file."""
+    """The content of the JSON file."""
     return {
         "avatar": benched.avatar,
         "serial": benched.serial,

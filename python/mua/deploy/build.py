@@ -11,10 +11,10 @@ from mua.errors import InputError
 METHOD = "Mua.Editor.Build.Quest"
 APK = Path("Build", "mua-player.apk")
 AGAIN = re.compile(r"^MUA-BUILD AGAIN (.+)", re.MULTILINE)
-AGAIN_CODE = 3  # of Unity's exit: packages or scripts were brought, which its next start compiles
-MOST_RUNS = 3  # one brings what is missing, one builds; one more where a package brings another
+AGAIN_CODE = 3  # Unity's exit code after packages or scripts were added, which its next start compiles
+MOST_RUNS = 3  # one adds what is missing, one builds; one more where a package needs another
 
-# What tells most of a failed build comes first; of each kind the last line counts.
+# The most informative kind of line first; of each kind the last line counts.
 ERRORS = tuple(
     re.compile(pattern, re.MULTILINE)
     for pattern in (
@@ -57,7 +57,7 @@ def build(editor: Editor, project: Path) -> Path:
 
 
 def last_error(log: str) -> str:
-    """The line of Unity's log that tells most about why a build failed."""
+    """The line of Unity's log that best says why a build failed."""
     for kind in ERRORS:
         if found := kind.findall(log):
             return one_line(found[-1])

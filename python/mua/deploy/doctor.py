@@ -1,4 +1,4 @@
-"""What a machine and a headset still lack, each with its fix."""
+"""What a machine and a headset lack, each with its fix."""
 
 import subprocess
 import sys
@@ -15,7 +15,7 @@ from mua.deploy.player import PACKAGE, installed
 from mua.deploy.unity import OLDEST, find, release
 from mua.errors import InputError
 
-OLDEST_API = 32  # of Android: what set-up of the Unity project builds the player for, ProjectPlayer.cs
+OLDEST_API = 32  # Android API level for which the Unity project builds the player (ProjectPlayer.cs)
 LOW_BATTERY = 20  # percent
 LINK_RUNTIME = "oculus_openxr_64.json"
 OPENXR_KEY = "SOFTWARE\\Khronos\\OpenXR\\1"
@@ -150,7 +150,7 @@ def _avatar(path: Path) -> Check:
 def _active_runtime() -> str | None:
     if sys.platform != "win32":
         return None
-    import winreg  # there is none elsewhere
+    import winreg  # other systems have none
 
     try:
         with winreg.OpenKey(winreg.HKEY_LOCAL_MACHINE, OPENXR_KEY) as key:

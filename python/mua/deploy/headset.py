@@ -44,7 +44,7 @@ class Headset:
     def ask(self, *words: str, seconds: float = SECONDS) -> tuple[int, str]:
         """Exit code and text of a shell command, whose words reach the program as they are."""
         with self._failing(words[0]):
-            # Version 2 of the shell protocol tells exit codes; the library has a way round it for what lacks it.
+            # Version 2 of the shell protocol reports exit codes; the library works around devices without it.
             done = self._device.shell2(shlex.join(words), timeout=seconds, v2=True)
             return int(done.returncode), done.output.strip()
 
@@ -56,7 +56,7 @@ class Headset:
         return text
 
     def send(self, content: bytes, path: str) -> None:
-        """Write a file there."""
+        """Write a file on the headset."""
         # adbutils has a push too, but drops the reason that the device gives and waits without an end.
         spec = f"{path},{MODE}".encode()
         with self._failing(f"pushing {path}"), self._device.open_transport(timeout=SECONDS) as link:
@@ -72,7 +72,7 @@ class Headset:
                 raise AdbError(link.read_string(length))
 
     def size(self, path: str) -> int | None:
-        """Bytes of a file there; None if there is none."""
+        """Bytes of a file on the headset; None if there is none."""
         with self._failing(f"looking at {path}"):
             found = self._device.sync.stat(path)
             return int(found.size) if found.mode else None
@@ -139,7 +139,7 @@ def attached(client: AdbClient) -> dict[str, str]:
 
 
 def meaning(state: str) -> str:
-    """What a state that is not `device` says of a headset, with the fix."""
+    """A sentence for a state other than `device`, with the fix."""
     return STATES.get(state, f"is in state {state!r}, expected 'device': restart it")
 
 

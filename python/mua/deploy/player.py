@@ -1,4 +1,4 @@
-"""The player on the headset: installed, started and followed. docs/deploy.md has what it is told and answers."""
+"""The player on the headset: installed, started and followed. docs/deploy.md lists its arguments and answers."""
 
 import secrets
 import time
@@ -13,7 +13,7 @@ ACTIVITY = "com.unity3d.player.UnityPlayerGameActivity"
 STAGED = "/data/local/tmp/mua-player.apk"
 TAGS = ("Unity:V", "VrApi:V", "AndroidRuntime:E", "DEBUG:F", "libc:F")
 CRASHES = (f"Process: {PACKAGE},", f">>> {PACKAGE} <<<")  # in Java and in native code; the next line has the reason
-PATIENCE = 60.0  # seconds without an answer from the player until it is given up
+PATIENCE = 60.0  # seconds without an answer after which the player is given up
 TICK = 1.0  # seconds between looks at the clock while the log is silent
 
 # Reasons of Android's package manager that have a fix of their own.
@@ -73,12 +73,12 @@ def installed(headset: Headset) -> bool:
 
 
 def new_run() -> str:
-    """What tells the answers of this start of the player from those of any other."""
+    """An id that distinguishes the answers of this start of the player from those of any other."""
     return secrets.token_hex(4)
 
 
 def start(headset: Headset, *arguments: str) -> None:
-    """Start the player anew with these words on its command line."""
+    """Restart the player with these words on its command line."""
     stop(headset)
     text = headset.tell("am", "start", "-n", f"{PACKAGE}/{ACTIVITY}", "-e", "unity", " ".join(arguments))
     if "Error" in text:
@@ -95,7 +95,7 @@ def follow(headset: Headset, run: str, *arguments: str, patience: float | None =
     Errors: InputError when it crashes, when the log ends, and when no answer of this run comes for `patience` seconds,
     PATIENCE if left out.
     """
-    headset.ask("logcat", "-c")  # what it leaves behind costs time only: answers carry the run
+    headset.ask("logcat", "-c")  # lines that remain only cost time: answers carry the run
     start(headset, *arguments, "-muaRun", run)
     heard = time.monotonic()
     lines = headset.log(*TAGS, silence=TICK)
@@ -114,7 +114,7 @@ def follow(headset: Headset, run: str, *arguments: str, patience: float | None =
 
 
 def answers(lines: Iterable[str], mark: str, run: str) -> Iterator[str]:
-    """What the player says of this run, without the mark and the run."""
+    """The player's answers in this run, without the mark and the run."""
     begin = f"{mark} {run} "
     for line in lines:
         _, found, said = line.partition(begin)

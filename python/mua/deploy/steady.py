@@ -10,7 +10,7 @@ if TYPE_CHECKING:  # loads adbutils
     from mua.deploy.headset import Headset
 
 RATES = (72, 80, 90, 120)  # Hz of Quest 3's display
-LEVEL = 4  # of CPU and GPU: held without throttling on Quest 3
+LEVEL = 4  # level of CPU and GPU that a Quest 3 holds without throttling
 UNDO_SECONDS = 10.0
 
 SENSOR = "com.oculus.vrpowermanager"
@@ -49,15 +49,15 @@ def steady(headset: "Headset", rate: int) -> Iterator[None]:
 @contextmanager
 def _undoing(headset: "Headset", commands: Sequence[tuple[str, ...]]) -> Iterator[None]:
     """Run `commands` at the end, whatever happened; one that fails becomes part of the sentence."""
-    told = ""
+    failure = ""
     try:
         yield
     except InputError as error:
-        told = f"{error}; "
+        failure = f"{error}; "
         raise
     finally:
         try:
             for command in commands:
                 headset.tell(*command, seconds=UNDO_SECONDS)
         except InputError as error:
-            raise InputError(f"{told}{headset.serial} keeps its measuring settings until it is restarted") from error
+            raise InputError(f"{failure}{headset.serial} keeps its measuring settings until it is restarted") from error

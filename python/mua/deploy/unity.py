@@ -20,8 +20,8 @@ class Editor:
     """One installed editor."""
 
     program: Path
-    version: str  # as 6000.0.23f1; empty where its folder does not tell
-    android: bool  # the module that builds for Android is there
+    version: str  # such as 6000.0.23f1; empty where its folder does not show it
+    android: bool  # whether the module that builds for Android is installed
 
 
 def find(unity: Path | None = None, project: Path | None = None) -> Editor:
@@ -58,7 +58,7 @@ def editors(folders: list[Path]) -> list[Editor]:
 
 
 def editor(program: Path) -> Editor:
-    """What the place of a program tells of it."""
+    """An editor described by the location of its program."""
     version = next((part for part in reversed(program.parts) if VERSION.fullmatch(part)), "")
     # Windows and Linux: Editor/Data beside the program. macOS: beside Unity.app.
     beside = (program.parent / "Data", *program.parents[3:4])

@@ -22,7 +22,7 @@ FIGURES = {
 
 
 def parse(line: str) -> dict[str, float]:
-    """The figures that a line of the log has; none if it is another's or holds none of them."""
+    """The figures in a line of the log; empty for lines of other programs."""
     found = LINE.search(line)
     if found is None:
         return {}

@@ -15,7 +15,7 @@ from mua.pose.skeleton import Skeleton
 ROTATIONS = "Zrotation Xrotation Yrotation"  # applied from left to right, each about the axes so far
 POSITIONS = "Xposition Yposition Zposition"
 STILL = 1e-6  # metres, by which a joint may move in its parent and still have a fixed offset
-TIP = 0.05  # metres, of a joint whose bone has no length
+TIP = 0.05  # metres, for a joint whose bone has no length
 
 
 def bvh_text(skeleton: Skeleton, clip: Clip) -> str:
@@ -73,7 +73,7 @@ def _hierarchy(
     joint: int,
     offsets: Array,  # [J, 3]
     moves: Array,  # [J] which joints have positions
-    order: list[int],  # of the joints in the file, appended to
+    order: list[int],  # joints in the order of the file, appended to
 ) -> list[str]:
     """The lines of a joint and all below it."""
     depth = len(skeleton.ancestors(joint))

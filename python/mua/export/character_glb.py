@@ -33,7 +33,7 @@ from mua.export.surface import DetailedMesh, SkinnedMesh, detailed_normals
 from mua.pose.clip import Clip
 from mua.pose.skeleton import Skeleton
 
-INFLUENCES = 4  # that every reader knows
+INFLUENCES = 4  # the joints of a vertex that every reader supports
 
 
 def character_glb(frames: ExportFrames, mesh: SkinnedMesh | None) -> bytes:
@@ -135,7 +135,7 @@ def _skinned(glb: Glb, mesh: SkinnedMesh) -> Primitive:
 
 
 def _unlit(glb: Glb, look: PbrMetallicRoughness) -> None:
-    """The only material of a file."""
+    """The file's only material, unlit."""
     glb.use(UNLIT)
     glb.document.materials = [Material(pbrMetallicRoughness=look, extensions={UNLIT: {}}, doubleSided=True)]
 

@@ -13,8 +13,8 @@ from mua.export.ply import by_channel, written
 from mua.export.splats import WorldSplats, morton_order
 
 CHUNK = 256
-LEAST_RANGE = 1e-5  # of a chunk; readers take smaller ones for none
-LARGEST_LOG = 20.0  # of a scale in either direction
+LEAST_RANGE = 1e-5  # smallest range of a chunk; readers treat smaller ones as zero
+LARGEST_LOG = 20.0  # limit of a logarithmic scale in either direction
 COEFFICIENTS = 8.0  # the width of the range that a byte of a linear coefficient covers
 AXES, COLORS = ("x", "y", "z"), ("r", "g", "b")
 RANGES = tuple(

@@ -1,4 +1,4 @@
-"""From what is asked for to what a file holds; libraries are loaded for the formats that need them."""
+"""The content of the requested files; libraries are loaded for the formats that need them."""
 
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -12,7 +12,7 @@ from mua.export.ply import ply_bytes
 from mua.export.splats import HALF_TURN_Z, WorldSplats, turned, world_splats
 from mua.export.spz import spz_bytes
 
-# Viewers take all of them for Y down, as 3D Gaussian Splatting writes them.
+# Viewers assume Y down in these formats, as 3D Gaussian Splatting writes them.
 SPLAT_FORMATS: dict[str, Callable[[WorldSplats], bytes]] = {
     ".ply": ply_bytes,
     ".compressed.ply": compressed_ply_bytes,
@@ -90,7 +90,7 @@ def _write_stage(
 
 
 def held(kind: Kind, frames: ExportFrames) -> str:
-    """What a file holds, for people."""
+    """What a file holds, in words."""
     rig = frames.avatar.rig
     counts = {
         SPLATS: f"{len(rig.texels.texels):,} splats",

@@ -1,4 +1,4 @@
-"""What is exported: frames of one clip of an avatar."""
+"""The frames of one clip of an avatar that are exported."""
 
 from dataclasses import dataclass
 
@@ -15,7 +15,7 @@ class ExportFrames:
 
     avatar: Avatar
     clip: Clip  # at the rate of the avatar's encoding
-    numbers: range  # of the frames; not empty
+    numbers: range  # exported frames; not empty
 
     @property
     def rate(self) -> float:

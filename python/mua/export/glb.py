@@ -32,7 +32,7 @@ class Glb:
         normalized: bool = False,
         bounds: bool = False,
     ) -> int:
-        """The number of a new accessor."""
+        """Add an accessor and return its index."""
         if values.ndim == 3:
             values = values.swapaxes(1, 2)  # glTF has them column by column
         found = Accessor(
@@ -48,7 +48,7 @@ class Glb:
         return len(self.document.accessors) - 1
 
     def view(self, content: bytes, *, target: int | None = None) -> int:
-        """The number of a new part of the buffer."""
+        """Add a part of the buffer and return its index."""
         self._buffer += bytes(-len(self._buffer) % 4)
         view = BufferView(buffer=0, byteOffset=len(self._buffer), byteLength=len(content), target=target)
         self._buffer += content
@@ -56,7 +56,7 @@ class Glb:
         return len(self.document.bufferViews) - 1
 
     def node(self, node: Node, *, in_scene: bool = True) -> int:
-        """The number of a new node."""
+        """Add a node and return its index."""
         self.document.nodes.append(node)
         number = len(self.document.nodes) - 1
         if in_scene:
@@ -64,7 +64,7 @@ class Glb:
         return number
 
     def use(self, extension: str) -> None:
-        """Say that an extension is used; readers that do not know it may still open the file."""
+        """Declare an extension as used; readers that do not know it may still open the file."""
         if extension not in self.document.extensionsUsed:
             self.document.extensionsUsed.append(extension)
 

@@ -1,4 +1,4 @@
-"""Joints and their motion as other programs take them."""
+"""Joints and their motion in the conventions of other programs."""
 
 import numpy as np
 
@@ -28,7 +28,7 @@ def matrices(
 def steady(
     rotations: Array,  # [F, ..., 4]
 ) -> Array:
-    """The same rotations with the signs for which each is nearest to the one before it: players blend components."""
+    """Rotations with the signs that bring each nearest to the one before it, because players blend components."""
     turns = np.sum(rotations[1:] * rotations[:-1], axis=-1) < 0
     flipped = np.cumsum(turns, axis=0) % 2 == 1
     signs = np.concatenate([np.zeros((1, *flipped.shape[1:]), bool), flipped])

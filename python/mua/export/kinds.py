@@ -1,4 +1,4 @@
-"""What can be exported as what: the endings of files and what they hold."""
+"""The kinds of exported files: their endings and what they hold."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ class Kind:
 
 PACKAGE = ".usdz"  # with the texture of the mesh
 USD = (".usd", ".usda", ".usdc", PACKAGE)
-KINDS = (  # of one ending the default comes first
+KINDS = (  # the default of each ending comes first
     Kind(".compressed.ply", SPLATS, clip=False),
     Kind(".ply", SPLATS, clip=False),
     Kind(".spz", SPLATS, clip=False),
@@ -37,7 +37,7 @@ IN_DIRECTORY = ".ply"  # where the output is a directory
 
 
 def kind_of(output: Path, what: str | None) -> Kind:
-    """What a name asks for; raises InputError for an ending that is not known or does not hold `what`."""
+    """The kind of file that a name asks for; raises InputError for an unknown ending or one that cannot hold `what`."""
     suffix = suffix_of(output)
     kinds = [kind for kind in KINDS if kind.suffix == suffix]
     fitting = [kind for kind in kinds if what in (None, kind.what)]

@@ -1,4 +1,4 @@
-"""Several files at once, all of them or none."""
+"""Writes several files together: all of them or none."""
 
 import shutil
 import tempfile
@@ -25,7 +25,7 @@ def write_all(files: Iterable[tuple[Path, bytes]]) -> None:
             (stage / target.name).write_bytes(content)
             staged.append(target)
         for target in staged:
-            assert stage is not None  # as something is staged
+            assert stage is not None  # only where something is staged
             (stage / target.name).replace(target)
     except OSError as error:
         raise refused(target, error) from error

@@ -1,4 +1,4 @@
-"""Splats as other programs take them: each complete in world space, its colours among the rest.
+"""Splats as other programs read them: everything in world space, colours included.
 
 An avatar's spherical harmonics are in canonical space, so that a player turns the viewing direction back for every
 splat. Other viewers know one space for all splats; here the coefficients are turned instead, which for degree 1 is
@@ -56,7 +56,7 @@ def mean_colors(
 
 
 def world_splats(splats: Splats) -> WorldSplats:
-    """The same splats with their spherical harmonics in world space."""
+    """The splats with their spherical harmonics in world space."""
     raw = splats.texture
     return WorldSplats(
         centres=splats.centres.astype(np.float32),

@@ -18,7 +18,7 @@ DEGREE = 1
 ANTIALIASED = 1  # drawn by a filter over the pixel, as our renderer does
 MOST_FRACTION = 20  # bits: a millionth of a metre
 POSITION_BITS = 24
-COLOR_SCALE = 0.15  # of the constant coefficient, so that colours somewhat outside of 0..1 fit
+COLOR_SCALE = 0.15  # scale of the constant coefficient, so that colours somewhat outside of 0..1 fit
 SCALE_OFFSET, SCALE_STEPS = 10.0, 16.0  # logarithms from -10 in sixteenths
 COEFFICIENT_STEPS = 128.0  # -1 to 1
 

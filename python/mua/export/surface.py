@@ -1,4 +1,4 @@
-"""Meshes of an avatar as other programs take them: the template with a texture, and the detailed geometry."""
+"""An avatar's meshes as other programs read them: the template with a texture, and the detailed geometry."""
 
 import io
 from dataclasses import dataclass
@@ -52,7 +52,7 @@ class DetailedMesh:
 
 def skinned_mesh(
     avatar: Avatar,
-    splats: Splats,  # of the frame whose colours are painted
+    splats: Splats,  # the frame whose colours are painted
 ) -> SkinnedMesh:
     """The template of an avatar, painted with the mean colours of its splats."""
     mesh, rig = avatar.rig.mesh, avatar.rig

@@ -20,7 +20,7 @@ from mua.export.splats import mean_colors, world_splats
 from mua.export.surface import DetailedMesh, SkinnedMesh
 from mua.pose.skeleton import Skeleton
 
-SPLAT_SCHEMA = "ParticleField3DGaussianSplat"  # of OpenUSD 26.03 and later
+SPLAT_SCHEMA = "ParticleField3DGaussianSplat"  # in OpenUSD 26.03 and later
 
 
 def write_character(path: Path, frames: ExportFrames, mesh: SkinnedMesh | None, *, texture: str | None = None) -> None:
@@ -194,7 +194,7 @@ def _vectors(values: Array) -> Vt.Vec3fArray:
 
 
 def _quaternions(rotations: Array) -> Vt.QuatfArray:
-    """Of wxyz; USD's arrays have the real part last."""
+    """USD quaternions from wxyz; USD's arrays have the real part last."""
     return Vt.QuatfArray.FromNumpy(np.ascontiguousarray(np.roll(rotations, -1, axis=-1), np.float32))
 
 

@@ -1,4 +1,4 @@
-"""What images of a figure stand on: white, and grey for a figure that is itself white."""
+"""The background of a figure's images: white, or grey for a figure that is itself white."""
 
 from collections.abc import Iterable
 
@@ -7,14 +7,14 @@ import numpy as np
 from mua.arrays import Array
 
 WHITE, GREY = 1.0, 0.55
-NEAR_WHITE = 0.85  # of each channel: paler than this is hardly seen on white
-MOSTLY = 0.5  # of what the figure covers
+NEAR_WHITE = 0.85  # in each channel; paler colours hardly show on white
+MOSTLY = 0.5  # share of the figure's pixels
 
 
 def background_for(
     images: Iterable[Array],  # [H, W, 4] premultiplied sRGB and alpha
 ) -> float:
-    """The grey, 0..1, on which a figure is seen in all of its images."""
+    """The grey in 0..1 on which a figure stands out in all of its images."""
     covered = pale = 0
     for image in images:
         solid = image[..., 3] > 0.5

@@ -61,11 +61,11 @@ class Canvas:
 def draw(
     program: moderngl.Program,
     rows: Array,  # [N, c], one for each vertex or instance
-    layout: str,  # of a row, as moderngl writes it: "3f 2f"
-    names: Sequence[str],  # of the program's inputs
+    layout: str,  # layout of a row in moderngl's notation: "3f 2f"
+    names: Sequence[str],  # names of the program's inputs
     *,
     mode: int,
-    vertices: int = -1,  # of each instance
+    vertices: int = -1,  # vertices of each instance
     instances: int = 1,
 ) -> None:
     """Draw rows that are needed once."""

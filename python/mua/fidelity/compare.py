@@ -21,11 +21,11 @@ from mua.scene import Source
 from mua.teachers.simulated.still import StillTeacher
 
 SCREEN = (384, 512)  # width, height, pixels
-NEAR_BY = 6.0  # pixels about a place within which the surface tells which joint it belongs to
+NEAR_BY = 6.0  # pixels about a place within which the nearest surface names the joint
 POSED = 3  # frames of the clips beside the pose of the file
 ABOVE = float(np.radians(5))
 ROUND = {"front": 0.0, "left": 90.0, "back": 180.0, "front, right": -40.0}  # degrees round the figure
-IN_MOTION = ("front, right", -40.0), ("back, left", 140.0)  # one side for each frame, by turns
+IN_MOTION = ("front, right", -40.0), ("back, left", 140.0)  # one side for each frame, in turn
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,13 +37,13 @@ class Shot:
     splats: Array  # [H, W, 4]
     agreement: Agreement
     place: tuple[int, int]  # column and row of the worst place
-    joint: str  # of the source, that carries the surface nearest to it
-    difference: float  # there, in 0..1
+    joint: str  # joint of the source that carries the surface nearest to it
+    difference: float  # mean difference there, in 0..1
 
 
 @dataclass(frozen=True)
 class PoseFidelity:
-    """One pose from all its sides."""
+    """The comparison of one pose from all its sides."""
 
     pose: str
     shots: tuple[Shot, ...]
@@ -59,18 +59,18 @@ class PoseFidelity:
 
 @dataclass(frozen=True)
 class Fidelity:
-    """All poses."""
+    """The comparison over all poses."""
 
     poses: tuple[PoseFidelity, ...]
 
     @property
     def iou(self) -> float:
-        """Of the pose whose silhouettes overlap least."""
+        """Overlap in the pose whose silhouettes overlap least."""
         return min(pose.agreement.iou for pose in self.poses)
 
     @property
     def psnr(self) -> float:
-        """Decibels, of the pose whose colours differ most."""
+        """Decibels in the pose whose colours differ most."""
         return min(pose.agreement.psnr for pose in self.poses)
 
     @property
@@ -100,7 +100,7 @@ def spread(clips: Sequence[Clip], count: int) -> list[tuple[Clip, int]]:
 
 
 class _Studio:
-    """Both painters, set up for one source."""
+    """The painters of the source and of the splats."""
 
     def __init__(self, context: moderngl.Context, source: Source, poser: Poser) -> None:
         self._scene, self._poser = source.scene, poser
@@ -114,8 +114,8 @@ class _Studio:
         used = [at[np.unique(part.faces)] for at, part in zip(places, self._scene.parts, strict=True)]
         points = np.concatenate(used)
         bounds = np.stack([points.min(axis=0), points.max(axis=0)])
-        taught = teacher.frame(moment.pose, moment.stretches)
-        frame = pose_splats(teacher.rig, taught.mesh, texture=taught.texture, pose=moment.pose)
+        textured = teacher.frame(moment.pose, moment.stretches)
+        frame = pose_splats(teacher.rig, textured.mesh, texture=textured.texture, pose=moment.pose)
         shots = []
         for view, degrees in views.items():
             azimuth = moment.yaw + float(np.radians(degrees))

@@ -9,13 +9,13 @@ from scipy.ndimage import uniform_filter
 from mua.arrays import Array
 
 COVERED = 0.5  # opacity from which a pixel belongs to the silhouette
-MOST_DECIBELS = 99.0  # of images that are equal
+MOST_DECIBELS = 99.0  # the value for equal images
 WINDOW = 24  # a worst place is the worst mean over a square of this part of the image's height
 
 
 @dataclass(frozen=True)
 class Agreement:
-    """What images of one pose have in common, as sums, so that those of several views can be added."""
+    """The agreement of two images of one pose, as sums that can be added over views."""
 
     common: int  # pixels that both silhouettes hold
     missing: int  # pixels that only the source's holds

@@ -14,8 +14,8 @@ from mua.avatar.camera import Camera
 from mua.fidelity.canvas import LAID_OVER, Canvas, draw, set_uniform
 from mua.scene import Material, Part
 
-SAMPLES = 3  # along a side of a pixel; an odd number, so that no coverage is exactly one half
-LARGEST = 2048  # texels along a side of a texture: no picture shows more
+SAMPLES = 3  # samples along a side of a pixel; odd, so that no coverage is exactly one half
+LARGEST = 2048  # texels along a side of a texture; the images show no more
 FILTERING = 8.0  # samples along a texture that is seen at a slant
 SOLID = 0.99  # opacity from which a surface hides all behind it
 
@@ -57,7 +57,7 @@ class _Piece:
     corners: Array  # [3 F] int, vertices of the part
     inputs: Array  # [3 F, 6] float32, texture coordinates and the colour that multiplies the texture
     material: int
-    clear: bool  # something of its material shows what is behind
+    clear: bool  # whether any of its material is transparent
 
 
 class Painter:
@@ -94,7 +94,7 @@ class Painter:
         return self._canvas.read()
 
     def _draw_clear(self, places: Sequence[Array], camera: Camera) -> None:
-        """Lay what is not opaque over the rest, from back to front as far as whole triangles can be sorted."""
+        """Draw transparent triangles over the rest, sorted from back to front."""
         self._context.enable(moderngl.BLEND)
         self._context.blend_func = LAID_OVER
         waiting = []

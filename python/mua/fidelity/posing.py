@@ -14,19 +14,19 @@ from mua.pose.skeleton import Pose, Skeleton
 from mua.scene import Part, Scene, Source
 
 REST = "as the file stands"
-AGREED = 0.5  # of the surface: where less of it is turned alike, it has no heading of its own
+AGREED = 0.5  # share of the surface that must turn alike to have a heading of its own
 ALIKE = 30.0  # degrees
 
 
 @dataclass(frozen=True, eq=False)
 class Moment:
-    """One pose, of the character's skeleton and of its source's nodes."""
+    """One pose of the character's skeleton and of its source's nodes."""
 
     name: str
     pose: Pose
     nodes: Array  # [nodes, 4, 4] node to world, metres
-    yaw: float  # of the body since the bind pose, about +Y, radians
-    stretches: Stretches | None = None  # of this frame alone
+    yaw: float  # turn of the body since the bind pose about +Y, radians
+    stretches: Stretches | None = None  # stretches in this frame
 
 
 class Poser:
@@ -44,7 +44,7 @@ class Poser:
         return Moment(REST, self._rest, self._source.scene.rest, self._yaw(self._rest))
 
     def of_clip(self, clip: Clip, frame: int) -> Moment:
-        """A frame of a clip: the file's own nodes where it is the file's clip, else what the joints do to them."""
+        """A frame of a clip: the file's own nodes where the clip is from the file, else nodes moved by the joints."""
         pose = clip.pose(frame)
         own = [m for m in self._source.scene.motions if m.name == clip.name and len(m.worlds) == len(clip)]
         nodes = own[0].worlds[frame] if own and own[0].rate == clip.rate else self.by_joints(pose)
@@ -68,7 +68,7 @@ class Poser:
         return matrices
 
     def _yaw(self, pose: Pose) -> float:
-        """How far most of the surface is turned; where its parts do not agree, how far the root is."""
+        """The turn of most of the surface; the root's turn where its parts do not agree."""
         dual = self._skeleton.skinning(pose.rotations, pose.translations)
         headings = heading_of(dual[:, :4])
         angles = 2 * np.arctan2(headings[:, 2], headings[:, 0])

@@ -13,7 +13,7 @@ from mua.fidelity.canvas import LAID_OVER, Canvas, draw, set_uniform
 from mua.kernels.splat_draw import WEIGHT
 from mua.kernels.splat_project import REACH, wide_deviations
 
-SAMPLES = 2  # along a side of a pixel; of many thin splats over a part of a pixel, each is taken to cover another part
+SAMPLES = 2  # samples along a side of a pixel; thin splats in one pixel then cover different parts of it
 
 VERTEX = """
 #version 330

@@ -8,11 +8,11 @@ from PIL import Image, ImageDraw, ImageFont
 from mua.arrays import Array
 
 CAPTION = 22  # pixels
-GAIN = 4  # a difference is shown this many times as strong
+GAIN = 4  # factor by which differences are amplified
 
 
 def caption(titles: Sequence[str], width: int) -> Array:
-    """A white bar [CAPTION, n width, 3] uint8 with a title over each of n images so many pixels wide."""
+    """A white bar [CAPTION, n width, 3] uint8 with a title over each of n images of this width."""
     bar = Image.new("RGB", (len(titles) * width, CAPTION), "white")
     draw = ImageDraw.Draw(bar)
     for i, title in enumerate(titles):
@@ -21,13 +21,13 @@ def caption(titles: Sequence[str], width: int) -> Array:
 
 
 def difference(one: Array, other: Array) -> Array:
-    """How far images are apart, dark on white, in 0..1 and below."""
+    """The difference of two images, dark on white; at most 1, may be negative."""
     return np.asarray(1 - GAIN * np.abs(one - other))
 
 
 def sheet(
     strips: Sequence[Array],  # [h, w, 3] uint8, all of one size
-    columns: int,  # of strips beside each other
+    columns: int,  # strips in a row
 ) -> Image.Image:
     """All strips, row after row; what is left of the last row is white."""
     blank = np.full_like(strips[0], 255)

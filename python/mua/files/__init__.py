@@ -1,1 +1,1 @@
-"""Files and folders: written atomically, locked, looked for, told apart by their first bytes."""
+"""Files and folders: written atomically, locked, looked for, identified by their first bytes."""

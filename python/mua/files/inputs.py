@@ -1,4 +1,4 @@
-"""Whether what a command was given is there; asked before anything is loaded, so that a wrong name costs no time."""
+"""Checks that a command's inputs exist before anything is loaded, so that a wrong name costs no time."""
 
 from pathlib import Path
 
@@ -10,14 +10,14 @@ CAPTURE = "capture.json"
 
 
 def require_file(path: Path) -> None:
-    """Raises InputError where there is no file of that name."""
+    """Raise InputError where there is no file of that name."""
     if not path.is_file():
         problem = "is a directory, expected a file" if path.is_dir() else "there is no such file"
         raise InputError(f"{path}: {problem}")
 
 
 def require_motion(path: Path) -> None:
-    """Raises InputError where there is neither a file nor a directory of that name."""
+    """Raise InputError where there is neither a file nor a directory of that name."""
     if not path.exists():
         raise InputError(f"--motion {path}: there is no such file or directory")
 
@@ -28,14 +28,14 @@ def is_capture(path: Path) -> bool:
 
 
 def require_teacher(path: Path) -> None:
-    """Raises InputError where there is no directory of that name, or none that mua-teach wrote."""
+    """Raise InputError where there is no directory of that name, or none that mua-teach wrote."""
     if not (path / TEACHER).is_file():
         problem = f"it holds no {TEACHER}" if path.is_dir() else "there is no such directory"
         raise InputError(f"--teacher {path}: {problem}; expected the folder that mua-teach wrote")
 
 
 def require_recording(path: Path) -> None:
-    """Raises InputError where there is no directory of that name, or one that is no recording."""
+    """Raise InputError where there is no directory of that name, or one that is no recording."""
     if not path.is_dir():
         problem = "is a file, expected the directory of a recording" if path.is_file() else "there is no such directory"
         raise InputError(f"{path}: {problem}")
@@ -44,14 +44,14 @@ def require_recording(path: Path) -> None:
 
 
 def require_folder(path: Path) -> None:
-    """Raises InputError where there is no directory of that name."""
+    """Raise InputError where there is no directory of that name."""
     if not path.is_dir():
         problem = "is a file, expected the folder of a capture" if path.is_file() else "there is no such directory"
         raise InputError(f"{path}: {problem}")
 
 
 def require_capture(path: Path) -> None:
-    """Raises InputError where there is no directory of that name, or one that is no capture."""
+    """Raise InputError where there is no directory of that name, or one that is no capture."""
     require_folder(path)
     if not (path / CAPTURE).is_file():
         raise InputError(f"{path}: not a capture, it holds no {CAPTURE}")

@@ -12,8 +12,8 @@ from mua.errors import InputError
 from mua.files.write import refused
 
 NAME = ".lock"  # holds the id of the process at work, for the sentence that others are refused with
-TIMEOUT = 2.0  # seconds: those that a killed process has started take a moment to end
-WITHOUT_LOCKS = (errno.ENOLCK, errno.ENOTSUP, errno.ENOSYS)  # what some network file systems say
+TIMEOUT = 2.0  # seconds; the children of a killed process take a moment to end
+WITHOUT_LOCKS = (errno.ENOLCK, errno.ENOTSUP, errno.ENOSYS)  # errors of network file systems without locks
 
 
 class DirectoryLock:
@@ -27,9 +27,9 @@ class DirectoryLock:
         self,
         directory: Path,
         *,
-        name: str,  # of the directory, in sentences
+        name: str,  # the directory's name in error messages
     ) -> None:
-        """Raises InputError where any process holds the directory, this one too, or nothing can be written in it."""
+        """Raise InputError where any process holds the directory, this one too, or nothing can be written in it."""
         self._path = directory / NAME
         self._lock: FileLock | None = None
         lock = FileLock(self._path, timeout=TIMEOUT, mode=0o666, is_singleton=False)
@@ -49,7 +49,7 @@ class DirectoryLock:
         self._note(str(os.getpid()))
 
     def release(self) -> None:
-        """Let go; harmless where that has been done."""
+        """Release the lock; does nothing the second time."""
         if self._lock is not None:
             self._note("")
             self._lock.release()

@@ -1,11 +1,11 @@
-"""What a file really is, by its first bytes: a download that went wrong is called by its name."""
+"""The kind of a file by its first bytes, so that a failed download is recognised."""
 
 from pathlib import Path
 
 from mua.errors import InputError
 
 HEAD = 1024  # bytes that tell a file's kind
-# How a file begins, and what it then is. Binary formats first: text may begin with anything.
+# The first bytes of each kind of file. Binary formats first: text may begin with anything.
 MAGIC = (
     (b"Kaydara FBX Binary", "an FBX file"),
     (b"; FBX", "a text FBX file"),
@@ -49,7 +49,7 @@ FOREIGN_SUFFIXES = {
 
 
 def kind_of(head: bytes) -> str:
-    """What a file is that begins with `head`, as a noun with its article; "" where that cannot be told."""
+    """The kind of a file that begins with `head`, as a noun with its article; "" where it is unknown."""
     for magic, kind in MAGIC:
         if head.startswith(magic):
             return kind
@@ -64,7 +64,7 @@ def kind_of(head: bytes) -> str:
 def require_kind(path: Path, expected: str, *, kinds: tuple[str, ...]) -> None:
     """Raise an InputError where a file is empty or is plainly something else than `kinds`, such as an HTML page.
 
-    `expected` names the format for the sentence. A file whose kind cannot be told passes: its reader says more.
+    `expected` names the format for the sentence. A file of unknown kind passes: its reader says more.
     """
     with path.open("rb") as file:
         head = file.read(HEAD)

@@ -85,7 +85,7 @@ def remove_leftovers(path: Path) -> None:
 
 
 def refused(path: Path, error: OSError, *, named: str = "") -> InputError:
-    """The sentence for what the system would not write; `named` as a user knows it, where that is not by its path."""
+    """The error for a failed write; `named` is the user's name for the file where that is not its path."""
     if isinstance(error, FileExistsError | NotADirectoryError):
         file = next((above for above in (path, *path.parents) if above.is_file()), error.filename)
         return InputError(f"{named or path}: cannot be written ({file} is no directory)")
@@ -112,7 +112,7 @@ def _at_work(process: int) -> bool:
         return False
     try:
         os.kill(process, 0)
-    except PermissionError:  # somebody else's
+    except PermissionError:  # another user's process
         return True
     except (ProcessLookupError, OverflowError):
         return False

@@ -13,7 +13,7 @@ from mua.gpu.failure import naming
 from mua.gpu.reflect import BufferSlot, Interface
 from mua.gpu.uniforms import Uniforms
 
-MOST_BUFFERS = 8  # that one stage may bind on every device that Unity runs on
+MOST_BUFFERS = 8  # buffers that one stage may bind on every device that Unity runs on
 
 
 class Bindings:
@@ -77,7 +77,7 @@ class Bindings:
             return self._device.create_bind_group(layout=self.layout, entries=entries)
 
     def _check_aliases(self, bound: list[Buffer]) -> None:
-        """No dispatch may write what it also binds under another name: the result would depend on the device."""
+        """Refuse a buffer that is written and also bound under another name: the result would depend on the device."""
         for index, (slot, buffer) in enumerate(zip(self.buffers, bound, strict=True)):
             for other, same in zip(self.buffers[:index], bound[:index], strict=True):
                 if same is buffer and not (slot.read_only and other.read_only):
@@ -90,7 +90,7 @@ class Bindings:
 def check_names(
     label: str, bindings: Iterable[Bindings], buffers: Mapping[str, Buffer], values: Mapping[str, Any]
 ) -> None:
-    """InputError where a name is missing that one of the stages reads, or given that none of them has."""
+    """Raise InputError for a missing name that some stage reads, or a given name that no stage has."""
     slots: dict[str, BufferSlot] = {}
     declared: set[str] = set()
     needed: set[str] = set()

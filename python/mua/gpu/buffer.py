@@ -11,7 +11,7 @@ from mua.arrays import Array
 from mua.errors import InputError
 from mua.gpu.failure import naming
 
-WORD = 4  # bytes; what shaders address
+WORD = 4  # bytes; the unit that shaders address
 ALLOCATION = 16  # bytes: a whole float4, so that every element type of a shader fits even an empty buffer
 
 _serials = count()
@@ -21,7 +21,7 @@ class Buffer:
     """Named memory on the device that shaders read and write as whole words."""
 
     def __init__(self, device: wgpu.GPUDevice, content: Array | int, *, name: str, indirect: bool = False) -> None:
-        """Allocate and fill: an array's bytes, or so many zero bytes."""
+        """Allocate and fill with an array's bytes, or with this number of zero bytes."""
         data = None if isinstance(content, int) else _bytes(content, name)
         bytes_given = content if isinstance(content, int) else len(data or b"")
         if bytes_given < 0:

@@ -1,4 +1,4 @@
-"""A list of dispatches that is submitted as one, as Unity's CommandBuffer."""
+"""A list of dispatches that is submitted as one, like Unity's CommandBuffer."""
 
 from collections import defaultdict
 from collections.abc import Mapping
@@ -20,7 +20,7 @@ DISPATCH_ARGUMENTS = 12  # bytes: three group counts
 
 @dataclass(frozen=True)
 class Bound:
-    """A dispatch as those see it who count what it costs."""
+    """A dispatch with what is needed to count its cost."""
 
     kernel: str
     sizes: Mapping[str, int]  # bytes of its buffers, by the kernel's names for them
@@ -48,7 +48,7 @@ class Commands:
     def dispatch(
         self, kernel: Kernel, groups: tuple[int, int, int], buffers: Mapping[str, Buffer], **constants: Any
     ) -> None:
-        """Append a dispatch of so many groups; nothing runs before `submit`, and no groups run nothing."""
+        """Append a dispatch of `groups`; it runs at `submit`, and not at all with 0 groups."""
         kernel.check_groups(groups)
         self._append(kernel, groups, None, buffers, constants)
 
@@ -69,7 +69,7 @@ class Commands:
 
     @property
     def bound(self) -> tuple[Bound, ...]:
-        """What was appended so far, in order."""
+        """The dispatches appended so far, in order."""
         return tuple(dispatch.bound for dispatch in self._dispatches)
 
     def submit(self) -> None:

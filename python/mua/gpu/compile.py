@@ -1,4 +1,4 @@
-"""HLSL to SPIR-V: what comes compiled with the package, else by a compiler of this machine."""
+"""HLSL to SPIR-V: compiled in the package, else by a compiler on this machine."""
 
 from functools import lru_cache
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""The SPIR-V that comes with the package, so that nobody needs a compiler who does not change a shader.
+"""The SPIR-V that comes with the package, so that only those who change shaders need a compiler.
 
 `tools/gen_spirv.py` writes the folder: a file for each entry point, and an index that says what each was made from.
 """
@@ -24,7 +24,7 @@ def file_name(path: Path, entry: str, stage: str) -> str:
 
 
 def digest(texts: Iterable[str], options: tuple[str, ...]) -> str:
-    """What one entry point is made from: a shader's text, those of its includes, entry, stage and defines."""
+    """A digest of an entry point's sources: the texts of shader and includes, entry, stage and defines."""
     found = hashlib.sha256()
     for part in (*options, *texts):
         found.update(len(part).to_bytes(8, "little") + part.encode())

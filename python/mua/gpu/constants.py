@@ -11,16 +11,16 @@ from mua.gpu.reflect import Constant
 
 FORMATS = {"uint": "<I", "int": "<i", "float": "<f"}
 DTYPES = {"uint": "<u4", "int": "<i4", "float": "<f4"}
-KINDS = {"uint": "biu", "int": "biu", "float": "biuf"}  # of numpy values that each type of constant takes
+KINDS = {"uint": "biu", "int": "biu", "float": "biuf"}  # kinds of numpy values that each type of constant takes
 
 
 def block_size(constants: tuple[Constant, ...]) -> int:
-    """Bytes of a constant buffer: a multiple of 16, as the device asks for."""
+    """Bytes of a constant buffer: a multiple of 16, as devices require."""
     return -(-max(constant.offset + constant.size for constant in constants) // 16) * 16
 
 
 def pack(label: str, constants: Mapping[str, Constant], size: int, values: Mapping[str, Any]) -> bytes:
-    """The constant buffer with those of `values` that it has; a wrong type or shape is told with `label`."""
+    """The constant buffer filled from `values`; an error for a wrong type or shape begins with `label`."""
     block = bytearray(size)
     for name, value in values.items():
         constant = constants.get(name)

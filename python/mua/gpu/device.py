@@ -16,13 +16,13 @@ from mua.gpu.failure import naming
 from mua.gpu.kernel import Kernel
 from mua.gpu.uniforms import Uniforms
 
-# What is asked of the device beyond WebGPU's defaults: as much as it has.
+# Limits requested beyond WebGPU's defaults: as much as the device has.
 RAISED_LIMITS = ("max-buffer-size", "max-storage-buffer-binding-size", "max-texture-dimension-2d")
 FEATURES = ("timestamp-query", "float32-blendable")  # asked for where present
 
 
 class Device:
-    """A device and what was compiled for it so far."""
+    """A device and the kernels and pipelines compiled for it so far."""
 
     def __init__(self, adapter: Adapter, device: wgpu.GPUDevice) -> None:
         self.adapter = adapter
@@ -33,7 +33,7 @@ class Device:
         self._kernels: dict[tuple[Path, str], tuple[bytes, Kernel]] = {}
 
     def buffer(self, content: Array | int, *, name: str, indirect: bool = False) -> Buffer:
-        """A buffer of an array's bytes (any type of at most 4 bytes), or of so many zero bytes.
+        """A buffer with an array's bytes (any type of at most 4 bytes), or with this number of zero bytes.
 
         `indirect` lets the device read dispatch and draw arguments from it. InputError if it is too large.
         """
@@ -90,7 +90,7 @@ class Device:
         )
 
     def close(self) -> None:
-        """Give the device's memory back; its buffers and kernels are of no more use."""
+        """Give the device's memory back; its buffers and kernels can no longer be used."""
         self.wgpu.destroy()
 
 

@@ -18,7 +18,7 @@ def naming(subject: str) -> Iterator[None]:
 
 
 def _reason(error: Exception) -> str:
-    """wgpu gives lost devices and exhausted memory as validation errors too: its words tell them apart."""
+    """wgpu gives lost devices and exhausted memory as validation errors too: its messages distinguish them."""
     said = " ".join(str(error).split())
     if isinstance(error, wgpu.GPUOutOfMemoryError) or "not enough memory" in said.lower():
         return "the device is out of memory"

@@ -20,7 +20,7 @@ def find() -> str | None:
 
 
 def command(program: str, path: Path, entry: str, stage: str, output: Path) -> list[str]:
-    """What compiles one entry point into `output`, without includes and defines."""
+    """The command that compiles one entry point into `output`, without includes and defines."""
     # --amb numbers the bindings; each stage starts from 0, so the fragment's go to a set of their own
     group = ["--resource-set-binding", "frag", str(FRAGMENT_GROUP)] if stage == "frag" else []
     options = ["-D", "-V", "--target-env", "vulkan1.1", "-S", stage, "--amb", *group]
@@ -47,14 +47,14 @@ def compile(
 
 
 def shared_options(defines: list[str]) -> list[str]:
-    """Includes and defines, which all compilers take alike."""
+    """Includes and defines, in the syntax that all compilers share."""
     return [f"-I{sources.directory().resolve()}", *(f"-D{define}" for define in defines)]
 
 
 def result(path: Path, entry: str, output: Path, done: subprocess.CompletedProcess[str]) -> bytes:
-    """What a compiler left in `output`; raises InputError with its first error where it refused."""
+    """The SPIR-V that a compiler wrote to `output`; raises InputError with its first error where it refused."""
     if done.returncode or not output.is_file():
         lines = [line.strip() for line in (done.stdout + done.stderr).splitlines() if line.strip()]
-        told = next(filter(ERROR.search, lines), lines[-1] if lines else "the compiler said nothing")
-        raise InputError(f"{path}: {entry} does not compile: {told}")
+        message = next(filter(ERROR.search, lines), lines[-1] if lines else "the compiler said nothing")
+        raise InputError(f"{path}: {entry} does not compile: {message}")
     return output.read_bytes()

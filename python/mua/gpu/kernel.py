@@ -12,7 +12,7 @@ from mua.gpu.failure import naming
 from mua.gpu.reflect import BufferSlot, Constant, reflect
 from mua.gpu.uniforms import Uniforms
 
-MOST_GROUPS = 65535  # along one axis, on every device
+MOST_GROUPS = 65535  # groups along one axis that every device allows
 
 
 class Kernel:
@@ -34,16 +34,16 @@ class Kernel:
 
     @property
     def buffers(self) -> tuple[BufferSlot, ...]:
-        """What it binds, in order, with read-only or not, kind of scalar and bytes of an element."""
+        """Its buffers in order, each with whether it is read-only, its kind of scalar and the bytes of an element."""
         return self.bindings.buffers
 
     @property
     def constants(self) -> Mapping[str, Constant]:
-        """What its constant buffer holds, by name."""
+        """The members of its constant buffer by name."""
         return self.bindings.constants
 
     def check(self, buffers: Mapping[str, Buffer], constants: Mapping[str, Any]) -> None:
-        """InputError that names the kernel and the buffer or constant if one is missing or unknown."""
+        """Raise InputError that names the kernel and the buffer or constant if one is missing or unknown."""
         check_names(self.bindings.label, (self.bindings,), buffers, constants)
 
     def check_groups(self, groups: tuple[int, int, int]) -> None:

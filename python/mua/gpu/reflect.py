@@ -1,4 +1,4 @@
-"""What a compiled entry point reads and writes, by name, read off its SPIR-V."""
+"""The interface of a compiled entry point, by name, read off its SPIR-V."""
 
 from collections import defaultdict
 from dataclasses import dataclass, field
@@ -58,12 +58,12 @@ class Constant:
 
 @dataclass(frozen=True)
 class Interface:
-    """All that one entry point is bound to."""
+    """Everything that one entry point binds."""
 
     buffers: tuple[BufferSlot, ...]  # by binding
     constants: tuple[Constant, ...]  # by offset
     constants_binding: int | None  # None if it has no constant buffer
-    threads: tuple[int, int, int]  # of a group; ones if it is no compute shader
+    threads: tuple[int, int, int]  # threads of a group; ones if it is no compute shader
 
 
 @dataclass
@@ -99,7 +99,7 @@ def reflect(code: bytes) -> Interface:
 
 
 def _take(module: _Module, opcode: int, operands: list[int]) -> None:
-    """Note one instruction; those that say nothing on types and bindings pass by."""
+    """Take in one instruction; instructions unrelated to types and bindings are skipped."""
     if opcode == OP_NAME:
         module.names[operands[0]] = _text(operands[1:])
     elif opcode == OP_MEMBER_NAME:
@@ -189,7 +189,7 @@ def _strides(module: _Module, of: int, decorations: dict[int, int]) -> tuple[int
     opcode, operands = module.types[of]
     if opcode == OP_ARRAY:
         return (module.decorations[of][ARRAY_STRIDE], *_strides(module, operands[0], decorations))
-    if opcode == OP_STRUCT:  # slangc's wrapping of an array
+    if opcode == OP_STRUCT:  # slangc wraps arrays in a struct
         return _strides(module, operands[0], module.member_decorations[of, 0])
     if opcode == OP_MATRIX:
         stride = decorations[MATRIX_STRIDE]

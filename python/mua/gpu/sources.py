@@ -1,4 +1,4 @@
-"""Where the shaders lie, and which files one of them is made of."""
+"""Where the shaders are, and which files a shader includes."""
 
 import os
 import re
@@ -35,7 +35,7 @@ def read(path: Path) -> str:
 
 
 def with_includes(path: Path) -> dict[Path, str]:
-    """The text of a shader and of all that it includes, at any depth; what is absent the compiler will name."""
+    """The text of a shader and of all that it includes, at any depth; the compiler reports missing files."""
     found: dict[Path, str] = {}
     waiting = [path]
     while waiting:

@@ -1,4 +1,4 @@
-"""Tensors of the file as the kernels read them: words of packed elements, and how to unpack them."""
+"""The file's tensors as the kernels read them: words of packed elements, and how to unpack them."""
 
 import numpy as np
 

@@ -16,7 +16,7 @@ MOST_PASSES = 4096  # timestamps of a query set (WebGPU, section 20.1)
 class Timestamps:
     """When each pass of one command encoder ends; how long it took is the time since the end of the pass before.
 
-    Where passes begin is not asked: a device that puts timestamps off to the next barrier (Mesa's lavapipe) notes a
+    Beginnings are not recorded: a device that puts timestamps off to the next barrier (Mesa's lavapipe) notes a
     beginning only with its end. An empty pass gives the first one its beginning.
     """
 
@@ -35,7 +35,7 @@ class Timestamps:
         return {"query_set": self._queries, "end_of_pass_write_index": index}
 
     def resolve(self, encoder: wgpu.GPUCommandEncoder) -> None:
-        """Append what makes the timestamps readable; after the last pass."""
+        """Append the copy that makes the timestamps readable, after the last pass."""
         encoder.resolve_query_set(self._queries, 0, self._passes, self._ticks, 0)
 
     def milliseconds(self) -> Array:  # [passes] float64

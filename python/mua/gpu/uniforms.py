@@ -11,7 +11,7 @@ CAPACITY = 1 << 20  # bytes: several thousand dispatches may wait for one submit
 
 
 class Uniforms:
-    """A ring of constants: what was placed stays until CAPACITY more bytes were, by then long submitted."""
+    """A ring of constants: a value stays until CAPACITY more bytes are placed, long after its submit."""
 
     def __init__(self, device: wgpu.GPUDevice) -> None:
         usage = wgpu.BufferUsage.UNIFORM | wgpu.BufferUsage.COPY_DST

@@ -10,7 +10,7 @@ import numpy as np
 from mua import rotation
 from mua.arrays import Array
 
-LARGEST_LOG_SCALE = 10.0  # 22 km, far beyond what is packed; below it no exponential is infinite
+LARGEST_LOG_SCALE = 10.0  # 22 km, far beyond what is packed; no exponential overflows below it
 
 
 def blend_vertices(

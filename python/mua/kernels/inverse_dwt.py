@@ -11,7 +11,7 @@ from mua.channels import APPEARANCE
 
 TILE = 16  # texels along a side of a group of UpsampleTexels
 BATCH = 4  # channels that lie together in a row of texel_channels
-ROWS = 6  # of them, 3 for either branch
+ROWS = 6  # rows of texel_channels, 3 for either branch
 
 
 def inverse_dwt(
@@ -54,7 +54,7 @@ def upsample_texels(
     *,
     texels: Array,  # [N] row * 2^levels n + column
     static_offset: Array,  # [C, N]
-    coarser: int = 0,  # times that 2 x 2 texels become one; N are valid there
+    coarser: int = 0,  # how often 2 x 2 texels were merged; N counts the valid ones then
 ) -> Array:
     """All levels without details and the static offset, at the valid texels, [C, N]."""
     for _ in range(levels):
@@ -88,7 +88,7 @@ def unpack_channels(
 def pack_planes(
     planes: Array,  # [..., n, n]
 ) -> Array:
-    """LL or details as they lie between the kernels, [..., n, ceil(n / 2)] uint32: two columns' half floats to a word.
+    """LL or details as kernels exchange them, [..., n, ceil(n / 2)] uint32: two columns' half floats to a word.
 
     Each is off by at most 1/2048 of itself, or 2^-25 below 2^-14; 1/1024 and 2^-24 where a device rounds towards zero.
     Beyond the largest half float, values are held there.
@@ -104,27 +104,27 @@ def pack_planes(
 def unpack_planes(
     words: Array,  # [..., n, ceil(n / 2)] uint32
 ) -> Array:
-    """What pack_planes packed, [..., n, n] float32."""
+    """The planes that pack_planes packed, [..., n, n] float32."""
     halves = np.ascontiguousarray(words, "<u4").view("<f2")
     return halves[..., : words.shape[-2]].astype(np.float32)
 
 
 def plane_bytes(size: int) -> int:
-    """Of a plane that pack_planes packed."""
+    """Bytes of a plane that pack_planes packed."""
     return 4 * size * ((size + 1) // 2)
 
 
 def whole_words(
     taps: Array,  # [L], L even
 ) -> Array:
-    """The same filter with as many taps that a thread of InverseDwt finishes whole words: twice an odd number."""
+    """The filter padded to twice an odd number of taps, so that a thread of InverseDwt completes its words."""
     return np.pad(taps, 1) if len(taps) % 4 == 0 else taps
 
 
 def upsampling_taps(
     rec_lo: Array,  # [L], L even
     levels: int,  # without details
-    coarser: int = 0,  # at most as many: times that two texels become one
+    coarser: int = 0,  # at most `levels`: how often two texels were merged
 ) -> tuple[Array, int]:
     """The filter g [S, F] that levels of low-pass synthesis are together, and its delay, in float64.
 

@@ -18,7 +18,7 @@ from mua.arrays import Array
 from mua.channels import SH_C0, SH_C1
 from mua.kernels.splat_project import REACH, half_extents, wide_deviations
 
-WEIGHT = 9 * np.pi / 8 / REACH**2  # of the window in its middle: the Gaussian's integral, 2 pi, over (4 / 3 REACH)^2
+WEIGHT = 9 * np.pi / 8 / REACH**2  # the window's middle: the Gaussian's integral, 2 pi, over (4 / 3 REACH)^2
 BAND_PIXELS = 1 << 16  # pixels drawn together, so that their indices sort as 16-bit numbers
 CHUNK_PAIRS = 1 << 20  # (splat, pixel) pairs held at once
 

@@ -16,10 +16,10 @@ PIXEL_VARIANCE = 5 / 12 / REACH**2  # px^2; of the window that splat_draw draws,
 AWAY = 0.25  # sine of the angle by which a triangle is turned past edge-on where it is seen from behind
 GUARD = 1.3  # the linearisation is held at this multiple of the screen's half size; beyond it, it diverges
 LAST_KEY = 0xFFFE
-HIDDEN = 0xFFFF  # in place of the key of a splat that no eye sees
+HIDDEN = 0xFFFF  # the key of a splat that no eye sees
 SPLAT_WORDS = 8
 LARGEST_BARYCENTRIC = 0xFFFF  # stands for 1
-ONE_SIDED = 1 << 31  # beside the triangle of a texel that is not drawn from behind
+ONE_SIDED = 1 << 31  # flag beside the triangle of a texel that is not drawn from behind
 COLOR_STEPS, TINT_STEPS, OPACITY_STEPS = 1023, 63, 2047  # 10 bits, 7 bits for either sign, 11 bits
 COLOR_SCALES = np.array([1.0, 2.0, 4.0, 8.0])  # what COLOR_STEPS may stand for
 
@@ -34,7 +34,7 @@ def splat_project(
     screen: tuple[int, int],  # width, height of one eye, pixels
     near: float,  # metres
     bounds: Array,  # [2, 3] world box over which depth is keyed
-    normals: Array | None = None,  # [N, 3] world, of any length, of the triangles of one-sided texels; 0 of others
+    normals: Array | None = None,  # [N, 3] world, normals of one-sided texels' triangles, not normalised; 0 for others
 ) -> tuple[Array, Array, Array]:
     """Keep the splats that at least one eye may see.
 
@@ -61,7 +61,7 @@ def splat_project(
 def wide_deviations(
     deviations: Array,  # [...] pixels
 ) -> Array:
-    """Standard deviations [...] of what is drawn of a Gaussian."""
+    """Standard deviations [...] of the window that is drawn for a Gaussian."""
     return np.sqrt(deviations * deviations + deviations.dtype.type(PIXEL_VARIANCE))
 
 
@@ -120,7 +120,7 @@ def pack_texels(
     barycentrics: Array,  # [N, 2] or more: the first two
     one_sided: Array | None = None,  # [N] bool; None: no texel is
 ) -> Array:
-    """Where texels lie on the mesh, as a GPU holds them, [N, 2] uint32: the triangle, two barycentrics of 16 bits each.
+    """The texels' places on the mesh as a GPU holds them, [N, 2] uint32: triangle, two barycentrics of 16 bits each.
 
     The highest bit of the triangle says whether the texel is one-sided.
 
@@ -135,9 +135,9 @@ def pack_splats(
     centres: Array,  # [N, 3] metres
     colors: Array,  # [E, N, 3] sRGB towards one eye or two
     opacities: Array,  # [N]
-    ellipses: Array,  # [E, N, 6] of one eye or two; deviations 0 where an eye does not see the splat
+    ellipses: Array,  # [E, N, 6] for one eye or two; deviations 0 where an eye does not see the splat
 ) -> Array:
-    """Splats as they are drawn, 32 bytes each, [N, 8] uint32.
+    """Splats in the layout of the draw, 32 bytes each, [N, 8] uint32.
 
     Words 0-2: centre, f32; 3 and 4: pack_colors. The others are pairs of half floats, low half first: 5 and 6 the
     major axis of either eye, as long as its standard deviation, 7 the standard deviations across it in either eye.
@@ -180,7 +180,7 @@ def pack_colors(
 def pack_keys(
     keys: Array,  # [N] HIDDEN where no eye sees the splat
 ) -> Array:
-    """Two keys to a word, [ceil(N / 2)] uint32, the first in the low half; one that is missing is HIDDEN."""
+    """Two keys to a word, [ceil(N / 2)] uint32, the first in the low half; a missing second one is HIDDEN."""
     padded = np.append(keys, [HIDDEN] * (len(keys) % 2)).astype("<u2")
     return np.ascontiguousarray(padded).view("<u4")
 

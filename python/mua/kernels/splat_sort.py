@@ -23,5 +23,5 @@ def splat_sort(
 def _scatter(
     digits: Array,  # [M] uint8
 ) -> Array:
-    """Which element each place of the output takes: bucket by bucket, in order of arrival inside a bucket."""
+    """The element for each place of the output: bucket by bucket, in order of arrival inside a bucket."""
     return np.concatenate([np.flatnonzero(digits == d) for d in range(1 << DIGIT_BITS)])

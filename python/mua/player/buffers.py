@@ -61,12 +61,12 @@ class UpsamplingBuffers:
     taps: Buffer
     factor: int  # texels along a side for each sample
     reach: int  # samples along a side that a texel needs
-    delay: int  # of the filter, texels
+    delay: int  # delay of the filter, texels
 
 
 @dataclass(frozen=True)
 class BranchLevel:
-    """What is geometry's or appearance's alone of a level."""
+    """The part of a level that belongs to geometry or appearance alone."""
 
     upsampling: UpsamplingBuffers
     static_offset: StoredBuffer
@@ -81,12 +81,12 @@ class BranchBuffers:
     ll_basis: StoredBuffer
     details: tuple[BandBuffers, ...]  # coarse first
     channels: int
-    rank: int  # of LL
+    rank: int  # rank of LL
 
 
 @dataclass(frozen=True)
 class RigPlaces:
-    """Where a rig's texels lie on its mesh."""
+    """The places of a rig's texels on its mesh."""
 
     faces: Buffer  # [F, 3]
     texels: Buffer  # [N, 2] words (mua.kernels.splat_project.pack_texels)
@@ -94,7 +94,7 @@ class RigPlaces:
 
 @dataclass(frozen=True)
 class RigBuffers(RigPlaces):
-    """And what its vertices are posed by."""
+    """The places of the texels, and the tensors that pose the vertices."""
 
     skin_indices: Buffer  # [V, 8]
     skin_weights: Buffer  # [V, 8]
@@ -109,14 +109,14 @@ class LevelBuffers:
     splat_count: int
     places: RigPlaces
     tile_count: int
-    tiles: Buffer  # of mua.kernels.inverse_dwt.texel_tiles
+    tiles: Buffer  # from mua.kernels.inverse_dwt.texel_tiles
     tile_rows: Buffer
     geometry: BranchLevel
     appearance: BranchLevel
 
 
 def upload_rig(device: Device, rig: Rig) -> RigBuffers:
-    """Errors: InputError where a buffer is more than the device can bind or hold."""
+    """Upload a rig. Errors: InputError where a buffer is larger than the device can bind or hold."""
     return RigBuffers(
         faces=device.buffer(rig.mesh.faces.astype(np.uint32), name="template.faces"),
         texels=device.buffer(
@@ -128,7 +128,7 @@ def upload_rig(device: Device, rig: Rig) -> RigBuffers:
 
 
 class AvatarBuffers:
-    """Everything of a file that does not change from frame to frame; `avatar` is the same file on the CPU."""
+    """The data of a file that is the same in all frames; `avatar` is the file on the CPU."""
 
     def __init__(self, device: Device, path: Path) -> None:
         """Upload the file at `path`.
@@ -149,11 +149,11 @@ class AvatarBuffers:
         lo, hi = (whole_words(taps) for taps in (self.avatar.wavelet.rec_lo, self.avatar.wavelet.rec_hi))
         self.rec_lo = self._upload(lo.astype(np.float32), "wavelet.rec_lo")
         self.rec_hi = self._upload(hi.astype(np.float32), "wavelet.rec_hi")
-        self.taps = len(lo)  # of both
+        self.taps = len(lo)  # of geometry and appearance
         self.rig = self._named(lambda: upload_rig(device, rig))
         stored = {name: self._stored(tree[name]["static_offset"], f"{name}.static_offset") for name in BRANCHES}
         self._levels = [self._level(self.avatar, self.rig, stored)]
-        self._coarser: Model = self.avatar  # that the last of the levels was made of
+        self._coarser: Model = self.avatar  # from which the last level was made
 
     def level(self, number: int) -> LevelBuffers:
         """A level of detail, at most mua.avatar.coarser.coarsest of the avatar; made when it is first asked for.
@@ -223,7 +223,7 @@ class AvatarBuffers:
         return BandBuffers(mean, h, w, rank, size)
 
     def _upsampling(self, dynamic: int, coarser: int) -> UpsamplingBuffers:
-        """Of the levels beyond the `dynamic` ones that have details."""
+        """The upsampling filter of the levels after the `dynamic` ones, which have details."""
         wavelet = self.avatar.wavelet
         taps, delay = upsampling_taps(wavelet.rec_lo, wavelet.levels - dynamic, coarser)
         reach, factor = taps.shape

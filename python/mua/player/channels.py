@@ -12,28 +12,28 @@ from mua.player.buffers import AvatarBuffers, BandBuffers, BranchBuffers, Branch
 FLOAT = 4  # bytes
 TEXEL_CHANNELS = 2 * ROWS * BATCH  # bytes
 LAYER_ROWS, MESH_COLUMNS = 8, 64  # outputs of a group of MlpMatmul and of MlpMatmulTransposed
-LL_PAIRS = 64  # texels that share a word, of a group of BlendLl
+LL_PAIRS = 64  # pairs of texels, a word each, of a group of BlendLl
 DETAIL_TILE = 24  # texels along a side of a group of BlendDetail
 COARSE_TILE = 16  # samples along a side that a group of InverseDwt doubles
-PARTS = 2  # of a decode, that move about as many bytes: geometry; mesh and appearance
+PARTS = 2  # parts of a decode that move about as many bytes each: geometry; mesh and appearance
 
 
 @dataclass
 class ChannelSet:
-    """What a decode makes, the window of poses that it is made from, and the level of detail at which."""
+    """The result of a decode, with its window of poses and its level of detail."""
 
     level: LevelBuffers
-    components: Buffer  # [K] of the descriptor, as the networks read them
+    components: Buffer  # [K] components of the descriptor, which the networks read
     mesh: Buffer  # [V, 3] canonical vertices
     texel_channels: Buffer  # [6, N, 4] halves; holds the finest level
     outside: float = 0.0  # share of the pose that training did not show (mua.pose.components)
 
 
 class ChannelDecoder:
-    """The buffers between the kernels of a decode, sized once and reused by every part: none hands on to another."""
+    """The buffers between the kernels of a decode, allocated once and reused by every part."""
 
     def __init__(self, device: Device, avatar: AvatarBuffers) -> None:
-        """Errors: InputError where an intermediate buffer is more than the device can bind or hold."""
+        """Allocate. Errors: InputError where an intermediate buffer is larger than the device can bind or hold."""
         self.avatar = avatar
         self._load_kernels(device)
         self._create_buffers(device)
@@ -60,7 +60,7 @@ class ChannelDecoder:
         self.textures = tuple(device.buffer(textures[i], name=f"texture {i}") for i in range(2))
 
     def part(self, commands: Commands, channels: ChannelSet, part: int) -> None:
-        """Append one of PARTS, from the components in `channels` to what it makes of it."""
+        """Append one of PARTS; it reads the components in `channels` and writes its results there."""
         if part == 0:
             self._branch(commands, self.avatar.geometry, channels.level.geometry, channels, first_row=0)
         else:
@@ -68,7 +68,7 @@ class ChannelDecoder:
             self._branch(commands, self.avatar.appearance, channels.level.appearance, channels, first_row=ROWS // 2)
 
     def _mlp(self, commands: Commands, mlp: tuple[LayerBuffers, ...], components: Buffer) -> Buffer:
-        """What the MLP makes of the components; good until the next MLP."""
+        """The MLP's output for the components; valid until the next MLP runs."""
         x = components
         for i, layer in enumerate(mlp):
             y = self.activations[i % 2]
@@ -198,5 +198,5 @@ class ChannelDecoder:
 
 
 def groups(count: int, size: int) -> int:
-    """Groups of `size` that hold `count`."""
+    """How many groups of `size` hold `count` elements."""
     return -(-count // size)

@@ -22,7 +22,7 @@ DEVICE_DEPTH = np.array([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 0.5, 0.5], [0, 0, 0,
 
 @dataclass(frozen=True)
 class SortedSplats:
-    """What splat_project and splat_sort leave for the draw."""
+    """The results of splat_project and splat_sort that the draw reads."""
 
     splats: Buffer  # [N, 8] words (mua.kernels.splat_project.pack_splats)
     order: Buffer  # [M] the visible splats, back to front
@@ -35,7 +35,7 @@ class SplatRenderer:
     def __init__(
         self, device: Device, color_format: str, *, depth_format: str | None = None, fragment: str = "SplatFrag"
     ) -> None:
-        """With a depth format, what the pass drew before hides the splats whose centre lies behind it.
+        """With a depth format, earlier draws of the pass hide the splats whose centre lies behind them.
 
         The fragment CountFrag adds 1 to red in place of drawing.
         """
@@ -71,14 +71,14 @@ def view_projection(camera: Camera) -> Array:
 
 
 def set_eye(render_pass: wgpu.GPURenderPassEncoder, eye: int, camera: Camera) -> None:
-    """Confine what follows to the part of the target that this eye has."""
+    """Confine the following draws to this eye's part of the target."""
     width, height = camera.screen
     render_pass.set_viewport(eye * width, 0, width, height, 0, 1)
     render_pass.set_scissor_rect(eye * width, 0, width, height)
 
 
 def image_format(device: Device) -> str:
-    """The format in which many faint splats add up best: half floats lose a part of each that devices may truncate."""
+    """The best format for adding up many faint splats: half floats lose a part of each where devices truncate."""
     return EXACT_FORMAT if "float32-blendable" in device.wgpu.features else IMAGE_FORMAT
 
 
@@ -103,9 +103,9 @@ def draw_image(device: Device, renderer: SplatRenderer, splats: SortedSplats, ca
 
 def read_image(
     device: Device,
-    texture: wgpu.GPUTexture,  # of a format of CHANNEL_TYPES
+    texture: wgpu.GPUTexture,  # its format is one of CHANNEL_TYPES
 ) -> Array:
-    """The texture's pixels [H, W, 4] float32; waits for what is drawn."""
+    """The texture's pixels [H, W, 4] float32; waits for the draws."""
     width, height, _ = texture.size
     channel = CHANNEL_TYPES[texture.format]
     row = 4 * channel.itemsize * width

@@ -1,4 +1,4 @@
-"""What a close-up looks at: the surface that a joint moves, by the joint's name or that of a part of the body."""
+"""The target of a close-up: the surface that a joint moves, by the name of the joint or a part of the body."""
 
 from dataclasses import dataclass
 from difflib import get_close_matches
@@ -12,12 +12,12 @@ from mua.pose.joint_names import NAMESPACE, Roles, roles
 from mua.pose.skeleton import Skeleton
 from mua.rig.rig import Rig
 
-OFFERED = 8  # names in the sentence that refuses one
+OFFERED = 8  # most names that the error message offers
 
 
 @dataclass(frozen=True, eq=False)
 class Focus:
-    """A point that goes along with a joint."""
+    """A point that moves with a joint."""
 
     joint: int
     offset: Array  # [3] in the joint's own space, metres
@@ -49,7 +49,7 @@ def find_focus(rig: Rig, name: str) -> Focus:
 
 
 def _named(skeleton: Skeleton, name: str) -> list[int]:
-    """The joints that a name may mean: of that very name, else a part of the body, else but for case and namespace."""
+    """Joints that a name may mean: an exact match, else a body part, else a match without case and namespace."""
     if name in skeleton.names:
         return [skeleton.names.index(name)]
     found: Roles = roles(skeleton)

@@ -15,14 +15,14 @@ from mua.pose.components import read_components
 from mua.pose.descriptor import describe_window
 
 SKINNED = 64  # vertices of a group of BlendVertices
-IN_PLACE = rotation.dual_from_rigid(np.array([1.0, 0, 0, 0]), np.zeros(3))  # where the clip puts it
+IN_PLACE = rotation.dual_from_rigid(np.array([1.0, 0, 0, 0]), np.zeros(3))  # at the clip's own place
 
 
 class AvatarFrame:
-    """The channels that are shown and, where a decode is spread, those that are made meanwhile."""
+    """The channels that are shown and, where a decode is spread, the ones being decoded meanwhile."""
 
     def __init__(self, device: Device, avatar: AvatarBuffers) -> None:
-        """Errors: InputError where an intermediate buffer is more than the device can bind or hold."""
+        """Allocate. Errors: InputError where an intermediate buffer is larger than the device can bind or hold."""
         rig = avatar.avatar.rig
         self.avatar = avatar
         self.vertex_count = len(rig.mesh.vertices)
@@ -37,17 +37,17 @@ class AvatarFrame:
 
     @property
     def level(self) -> LevelBuffers:
-        """Of the decode that is shown."""
+        """Level of detail of the decode that is shown."""
         return self._shown.level
 
     @property
     def rig(self) -> RigPlaces:
-        """Where the texels that are shown lie on the mesh."""
+        """The places on the mesh of the texels that are shown."""
         return self.level.places
 
     @property
     def splat_count(self) -> int:
-        """Of the decode that is shown; the buffers hold the finest level."""
+        """Splats of the decode that is shown; the buffers hold the finest level."""
         return self.level.splat_count
 
     @property
@@ -57,17 +57,17 @@ class AvatarFrame:
 
     @property
     def texel_channels(self) -> Buffer:
-        """[6, N, 4] halves of the decode that is shown."""
+        """[6, N, 4] half floats of the decode that is shown."""
         return self._shown.texel_channels
 
     @property
     def outside(self) -> float:
-        """How far outside of training the pose is that is shown, 0 to 1 (mua.pose.components)."""
+        """How far the shown pose is outside of training, 0 to 1 (mua.pose.components)."""
         return self._shown.outside
 
     @property
     def parts_left(self) -> int:
-        """Of the decode that was begun and is not shown."""
+        """How many parts remain of the decode that was begun and is not shown."""
         return PARTS - self._decoded
 
     def _create_channels(self) -> ChannelSet:
@@ -85,7 +85,7 @@ class AvatarFrame:
         rotations: Array,  # [k, J, 4] local joint rotations, newest first
         translations: Array,  # [k, J, 3] local joint translations, metres
         place: Array = IN_PLACE,  # [8] rigid dual quaternion from the avatar's space to the world, metres
-        level: int = 0,  # of detail, 0 being the finest
+        level: int = 0,  # level of detail, 0 being the finest
     ) -> None:
         """Append the dispatches from a window of poses to channels and posed vertices, which are shown from then on.
 
@@ -95,7 +95,7 @@ class AvatarFrame:
         self.repose(commands, rotations[0], translations[0], place)
 
     def decode_channels(self, commands: Commands, rotations: Array, translations: Array, level: int = 0) -> None:
-        """The same without posing: all parts of a decode."""
+        """Append all parts of a decode, without posing."""
         self._begin(self._shown, rotations, translations, level)
         for part in range(PARTS):
             self._decoder.part(commands, self._shown, part)
@@ -127,7 +127,7 @@ class AvatarFrame:
         translations: Array,  # [J, 3] metres
         place: Array = IN_PLACE,  # [8]
     ) -> None:
-        """Append what moves the decoded avatar into another pose."""
+        """Append the dispatches that move the decoded avatar into another pose."""
         self._write_pose(rotations, translations, place)
         self._pose(commands)
 

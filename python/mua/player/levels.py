@@ -1,4 +1,4 @@
-"""The level of detail at which a player shows an avatar: the one that was asked for, or that its distance asks for."""
+"""The level of detail at which a player shows an avatar: the chosen one, or the one that suits its distance."""
 
 from collections.abc import Sequence
 
@@ -8,12 +8,12 @@ from mua.avatar.camera import Camera
 from mua.avatar.coarser import coarsest, texel_length
 from mua.avatar.level_choice import Seen, choose_level, texel_pixels
 
-AUTO, FULL = "auto", "full"  # by the distance; the finest
+AUTO, FULL = "auto", "full"  # chosen by the distance; the finest
 Wanted = str | int  # or texels along a side
 
 
 class Levels:
-    """Of one avatar, from image to image."""
+    """The level choice of one avatar, from image to image."""
 
     def __init__(self, avatar: Avatar, wanted: Wanted) -> None:
         size = avatar.rig.texels.size
@@ -25,7 +25,7 @@ class Levels:
 
     @property
     def note(self) -> str:
-        """A sentence where what is wanted is not there; else empty."""
+        """A sentence where the wanted level does not exist; else empty."""
         sizes = ", ".join(map(str, self.sizes))
         if self.wanted == AUTO and len(self.sizes) == 1:
             return f"the avatar has no coarser level of detail; it is shown at its {sizes} texels from everywhere."

@@ -1,4 +1,4 @@
-"""What an avatar is shown doing: a clip of its file, or motion from another file."""
+"""The motion that an avatar plays: a clip of its file, or motion from another file."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -12,12 +12,12 @@ from mua.pose.resample import resample
 
 def player_clips(
     avatar: Avatar,
-    file: Path,  # of the avatar, for the sentence
+    file: Path,  # the avatar's file, for error messages
     *,
     motion: Path | None,
     mapping: Mapping[str, str] | None,
 ) -> tuple[list[Clip], tuple[str, ...]]:
-    """All clips of `motion`, or of the avatar's own file, at the avatar's rate; and notes worth telling the user.
+    """All clips of `motion`, or of the avatar's own file, at the avatar's rate; and notes for the user.
 
     Errors: InputError where there is none, or where no joint of `motion` matches.
     """
@@ -32,7 +32,7 @@ def player_clips(
 
 
 def require_frame(clip: Clip, frame: int) -> int:
-    """The frame; InputError where the clip does not have it."""
+    """Return the frame; raises InputError where the clip does not have it."""
     if not 0 <= frame < len(clip):
         raise InputError(f"--frame is {frame}; clip {clip.name!r} has frames 0 to {len(clip) - 1}")
     return frame
@@ -42,7 +42,7 @@ def named_clip(
     clips: Sequence[Clip],
     name: str | None,
     *,
-    source: Path,  # of the clips, for the sentence
+    source: Path,  # source of the clips, for error messages
 ) -> Clip:
     """The clip of that name, or the first."""
     names = [clip.name for clip in clips]

@@ -37,7 +37,7 @@ class Offscreen:
     def picture(
         self,
         index: int,  # frame of the clip
-        cameras: Sequence[Camera],  # of one eye or two
+        cameras: Sequence[Camera],  # one eye or two
     ) -> Array:
         """Premultiplied sRGB and alpha [H, E W, 4] of one frame, eyes side by side."""
         window = self._avatar.avatar.avatar.encoding.frames(index)

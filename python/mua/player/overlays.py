@@ -1,4 +1,4 @@
-"""What is shown beside the splats: detailed geometry, template, skeleton, cast shadow (paper, section System)."""
+"""The overlays beside the splats: detailed geometry, template, skeleton, cast shadow (paper, section System)."""
 
 from collections.abc import Mapping
 from dataclasses import astuple
@@ -27,14 +27,14 @@ TEMPLATE_COLOR = (0.62, 0.72, 0.84)
 BONE_COLOR = (0.98, 0.62, 0.12)
 JOINT_COLOR = (1.0, 0.97, 0.90)
 OUTLINE_COLOR = (0.12, 0.10, 0.08)
-BONE_WIDTH, JOINT_WIDTH, OUTLINE = 2.5, 5.0, 1.5  # pixels; an outline shows on any background
+BONE_WIDTH, JOINT_WIDTH, OUTLINE = 2.5, 5.0, 1.5  # pixels; an outline is visible on any background
 
 LIGHT = (-0.35, -1.0, -0.45)  # from above, the character's left and front: the shadow falls behind it
-DARKNESS = 0.45  # of the ground in full shadow
+DARKNESS = 0.45  # opacity of the full shadow on the ground
 MASK_SIZE = 512  # samples along the shadow's square
-GROUND_FRAMES = 32  # of a clip, in which the lowest point is sought
-BELOW_GROUND = 0.1  # of these that may reach below it: captured feet stray, and others leap or climb
-MARGIN = 0.06  # of its size round the shadow, so that its soft edge is not cut off
+GROUND_FRAMES = 32  # frames of a clip in which the lowest point is sought
+BELOW_GROUND = 0.1  # share of these that may reach below it: captured feet are noisy, and some clips leap or climb
+MARGIN = 0.06  # margin round the shadow as a share of its size, so that its soft edge is not cut off
 
 
 _Indices = tuple[wgpu.GPUBuffer, int]  # triangles' corners, and how many of these
@@ -65,7 +65,7 @@ class Overlays:
 
     @cached_property
     def _surface(self) -> tuple[dict[str, Buffer], _Indices]:
-        """Made when it is first shown."""
+        """The surface's buffers, made when it is first shown."""
         surface = surface_mesh(self._avatar)
         rings = {name: self._device.buffer(getattr(surface, name), name=name) for name in ("ring_starts", "ring")}
         return rings, _indices(self._device, surface.triangles)
@@ -135,7 +135,7 @@ class Overlays:
         _draw_indexed(render_pass, self._template)
 
     def draw_skeleton(self, render_pass: wgpu.GPURenderPassEncoder, camera: Camera) -> None:
-        """Draw bones and joints over all that is there."""
+        """Draw bones and joints over everything else."""
         matrix, screen = view_projection(camera), np.array(camera.screen)
         for name, width, color in (
             ("bones", BONE_WIDTH + 2 * OUTLINE, OUTLINE_COLOR),
@@ -150,7 +150,7 @@ class Overlays:
 
 
 def ground_height(rig: Rig, clip: Clip | None) -> float:
-    """Where the character stands, metres: its lowest point over a clip, but for a few frames, else at rest."""
+    """Height of the ground in metres: the lowest point over a clip, except for a few frames, else at rest."""
     if clip is None:
         return float(rig.mesh.vertices[:, 1].min(initial=0))
     frames = np.unique(np.linspace(0, len(clip) - 1, GROUND_FRAMES).astype(int))

@@ -9,7 +9,7 @@ from mua.player.session import Session
 from mua.player.toggles import Toggles
 
 WIDTH = 300  # logical pixels
-SLOWEST, FASTEST = 0.1, 2.0  # of the clip's own speed
+SLOWEST, FASTEST = 0.1, 2.0  # factors of the clip's own speed
 WARNING = imgui.ImVec4(1.0, 0.55, 0.4, 1.0)
 SHOWN = {
     "splats": "Splats",
@@ -42,7 +42,7 @@ def _next_clip(session: Session) -> None:
     session.choose_clip(session.clips[(names.index(session.clip.name) + 1) % len(names)])
 
 
-# Key as rendercanvas names it: what the panel calls it and does, and the action.
+# Key by its rendercanvas name: its label, its description and its action.
 KEYS: dict[str, tuple[str, str, Callable[[Session], None]]] = {
     " ": ("space", "play or pause", _flip("playing")),
     "ArrowLeft": ("left", "one frame back", lambda session: session.step(-1)),

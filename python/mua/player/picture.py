@@ -1,4 +1,4 @@
-"""Images by the CPU reference, and what both ways of drawing share; needs no graphics device."""
+"""Images by the CPU reference, and the code that both renderers share; needs no graphics device."""
 
 from collections.abc import Sequence
 from functools import cache, lru_cache
@@ -15,7 +15,7 @@ from mua.pose.clip import Clip
 
 
 class Reference:
-    """The splats of the same images by the CPU reference; each eye sees its own colours."""
+    """Draws Offscreen's images by the CPU reference; each eye sees its own colours."""
 
     def __init__(self, avatar: Avatar, clip: Clip, *, levels: Levels | None = None) -> None:
         """`clip` is at the rate of the avatar's encoding; `levels` choose the level of detail, the finest if None."""
@@ -24,7 +24,7 @@ class Reference:
         self._decode = lru_cache(maxsize=1)(lambda index, level: decode_clip_frame(at_level(level), clip, frame=index))
 
     def picture(self, index: int, cameras: Sequence[Camera]) -> Array:
-        """As Offscreen.picture."""
+        """Premultiplied sRGB and alpha [H, E W, 4] of one frame, as Offscreen.picture draws it."""
         pose = self._clip.rotations[index], self._clip.translations[index]
         level = 0 if self._levels is None else self._levels.choose(*pose, cameras)
         return np.hstack([render_premultiplied(self._decode(index, level), camera) for camera in cameras])

@@ -1,4 +1,4 @@
-"""What one image shows: background, shadow, geometry or template, splats and skeleton, in this order."""
+"""The layers of an image: background, shadow, geometry or template, splats and skeleton, in this order."""
 
 from collections.abc import Sequence
 
@@ -24,7 +24,7 @@ class Scene:
     def __init__(
         self,
         device: Device,
-        frame: SplatFrame[AvatarFrame],  # of this avatar alone
+        frame: SplatFrame[AvatarFrame],  # splats of this avatar alone
         *,
         color_format: str = IMAGE_FORMAT,
         background: tuple[float, float, float, float] = CLEAR,  # premultiplied sRGB and alpha
@@ -89,7 +89,7 @@ class Scene:
                 overlays.draw_skeleton(render_pass, camera)
 
     def _depth_of(self, target: wgpu.GPUTexture) -> wgpu.GPUTexture:
-        """Depth for a target, kept until one of another size comes."""
+        """The depth texture for a target, kept until the target's size changes."""
         if self._depth is None or self._depth.size != target.size:
             usage = wgpu.TextureUsage.RENDER_ATTACHMENT
             self._depth = self._device.wgpu.create_texture(size=target.size, format=DEPTH_FORMAT, usage=usage)

@@ -1,4 +1,4 @@
-"""Which part of which decode a displayed frame makes, so that none has to make all of it.
+"""Decides which part of which decode a displayed frame makes, so that none has to make all of it.
 
 A display is faster than an avatar: the poses of a clip that come next are known, and are decoded part by part in the
 displayed frames before they are due. Poses that nobody saw coming, the first or one that was sought, are decoded at
@@ -16,12 +16,12 @@ Window = Callable[[Moment], tuple[Array, Array]]  # rotations [k, J, 4] and tran
 
 
 class DecodeSchedule:
-    """What of an avatar is shown, and what is decoded meanwhile."""
+    """The decode of an avatar that is shown, and the one made meanwhile."""
 
     def __init__(self, frame: AvatarFrame) -> None:
         self._frame = frame
-        self._shown: tuple[Moment, int] | None = None  # and at which level of detail
-        self._coming: tuple[Moment, int] | None = None  # begun, and not shown
+        self._shown: tuple[Moment, int] | None = None  # clip and frame, and its level of detail
+        self._coming: tuple[Moment, int] | None = None  # begun and not yet shown
 
     def record(self, commands: Commands, due: Moment, following: Moment, window: Window, *, level: int = 0) -> bool:
         """Append what one displayed frame decodes; whether other channels are shown than before.
@@ -40,7 +40,7 @@ class DecodeSchedule:
         return changed
 
     def _show(self, commands: Commands, wanted: tuple[Moment, int], window: Window) -> int:
-        """Show what is due; how many parts that took."""
+        """Show the decode that is due, and return how many parts that took."""
         taken = PARTS
         if wanted == self._coming:
             taken = self._frame.parts_left

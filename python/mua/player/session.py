@@ -1,4 +1,4 @@
-"""What an interactive player shows and how it moves, apart from any window."""
+"""The state of an interactive player, independent of any window."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -27,14 +27,14 @@ from mua.player.viewpoint import Viewpoint, framing
 from mua.pose.clip import Clip
 
 SMOOTHING = 0.1  # share of the newest frame in the times on screen
-ROUND = np.linspace(0, 2 * np.pi, 16, endpoint=False)  # radians: all sides of a figure
+ROUND = np.linspace(0, 2 * np.pi, 16, endpoint=False)  # radians at which a figure is framed, so that all its sides fit
 
 
 class Stage:
     """One loaded avatar."""
 
     def __init__(self, device: Device, source: Source, file: Path, look: Look, *, color_format: str) -> None:
-        """Errors: InputError where the file is broken or too large, the motion does not fit or a joint is missing."""
+        """Raise InputError where the file is broken or too large, the motion does not fit or a joint is missing."""
         avatar = AvatarBuffers(device, file)
         self.clips, self.notes = player_clips(avatar.avatar, file, motion=source.motion, mapping=source.mapping)
         self.frame = SplatFrame(device, [AvatarFrame(device, avatar)])
@@ -48,7 +48,7 @@ class Stage:
         self._grounds: dict[str, float] = {}
 
     def ground(self, clip: Clip) -> float:
-        """Height on which a clip stands, metres."""
+        """Height in metres of the ground on which a clip stands."""
         if clip.name not in self._grounds:
             self._grounds[clip.name] = ground_height(self.rig, clip)
         return self._grounds[clip.name]
@@ -64,7 +64,7 @@ class Session:
     def __init__(self, device: Device, source: Source, look: Look, *, color_format: str) -> None:
         """Load the first avatar.
 
-        Errors: InputError as of Stage, or where no clip has that name or so many frames.
+        Errors: InputError where Stage raises it, or where no clip has that name or the frame.
         """
         self._device, self._source, self._color_format = device, source, color_format
         self._stages: dict[Path, Stage] = {}
@@ -72,7 +72,7 @@ class Session:
         self.stereo, self.follow = look.shot.eyes is not None, look.shot.follow
         self.turning = look.shot.turning
         self.playing, self.speed, self.time = True, 1.0, 0.0  # time in frames of the clip
-        self.failure = ""  # why the last avatar asked for is not shown
+        self.failure = ""  # why the avatar last chosen is not shown
         self.milliseconds: dict[str, float] = {}  # by kernel, smoothed
         self.timed = False  # whether to measure them
         self.file = source.files[0]
@@ -100,17 +100,17 @@ class Session:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What retargeting and the level of detail have to tell."""
+        """Notes of retargeting and of the level of detail."""
         return self._stage.notes
 
     @property
     def splats(self) -> int:
-        """How many this avatar has."""
+        """How many splats this avatar has."""
         return self._stage.frame.splat_count
 
     @property
     def level(self) -> str:
-        """What chooses the level of detail, and how many texels along a side are shown."""
+        """The setting of the level of detail, and how many texels along a side are shown."""
         levels, shown = self._stage.levels, self._stage.frame.avatars[0].level.size
         return f"{levels.wanted} level: {shown} texels" if isinstance(levels.wanted, str) else f"{shown} texels"
 
@@ -148,11 +148,11 @@ class Session:
         self._clip, self.time = clip, 0.0
 
     def step(self, frames: int) -> None:
-        """Stop and go so many frames on."""
+        """Pause and move on by this number of frames."""
         self.playing, self.time = False, float((self.index + frames) % len(self._clip))
 
     def advance(self, seconds: float) -> None:
-        """Play on for so long, round and round."""
+        """Play on for this time, in a loop."""
         self._step = seconds * self.speed * self._clip.rate
         if self.playing:
             self.time = (self.time + self._step) % len(self._clip)
@@ -160,11 +160,11 @@ class Session:
                 self.view = replace(self.view, azimuth=self.view.azimuth + self.turning * seconds)
 
     def choose_level(self, wanted: Wanted) -> None:
-        """Show this avatar at another level of detail: AUTO, FULL or one of its sizes."""
+        """Choose the level of detail: AUTO, FULL or one of the avatar's sizes."""
         self._stage.levels.wanted = wanted
 
     def next_level(self) -> None:
-        """The next coarser level of detail; after the coarsest, by the distance again."""
+        """Choose the next coarser level of detail; after the coarsest, AUTO."""
         wanted: tuple[Wanted, ...] = (AUTO, *self._stage.levels.sizes)
         now = self._stage.levels.wanted
         self.choose_level(wanted[((wanted.index(now) if now in wanted else 1) + 1) % len(wanted)])
@@ -186,7 +186,7 @@ class Session:
             self._note(commands.milliseconds())
 
     def _pose(self, commands: Commands, cameras: Sequence[Camera]) -> None:
-        """Append what brings the avatar to the frame that is due, and a part of decoding the one after it."""
+        """Append the dispatches for the frame that is due, and a part of decoding the one after it."""
         stage, clip, index = self._stage, self._clip, self.index
         rotations, translations = clip.rotations[index], clip.translations[index]
         level = 0 if self.toggles.geometry else stage.levels.choose(rotations, translations, cameras)
@@ -212,7 +212,7 @@ class Session:
         return self._stages[file]
 
     def _followed(self) -> Array:
-        """What the view's target is relative to, [3] metres: the root at its first height, or what is looked at."""
+        """The point that the view follows, [3] metres: the root at its first height, or the focus."""
         skeleton, clip, focus = self._stage.rig.skeleton, self._clip, self._stage.focus
         frames = [self.index, 0]
         rotations, translations = clip.rotations[frames], clip.translations[frames]
@@ -229,7 +229,7 @@ class Session:
         return eyes_of(view, screen, (self._look.shot.eyes or EYE_DISTANCE) if self.stereo else None)
 
     def _framed(self, screen: tuple[int, int]) -> Viewpoint:
-        """The view that was asked for, before any mouse has moved it."""
+        """The initial view, before any mouse has moved it."""
         shot = self._look.shot
         sides = ROUND if self.turning else np.zeros(1)
         azimuths = self._stage.front(self._clip) + shot.azimuth + sides
@@ -237,7 +237,7 @@ class Session:
         return view if self._stage.focus is None else replace(view, target=np.zeros(3))
 
     def _note(self, milliseconds: Mapping[str, float]) -> None:
-        """Smooth the times; a kernel that did not run this time keeps what it took."""
+        """Smooth the times; a kernel that did not run keeps its last time."""
         for name, spent in milliseconds.items():
             before = self.milliseconds.get(name, spent)
             self.milliseconds[name] = before + SMOOTHING * (spent - before)

@@ -18,34 +18,32 @@ from mua.rig.rig import Rig
 
 GROUND = np.array([1.0, 0, 1])  # a camera that follows keeps its height
 TURN_SPEED, TURN_RATE = 60.0, 30.0  # degrees and images per second of a turntable
-SLOWEST, FASTEST = 1.0, 360.0  # degrees per second: six minutes for a turn, and a second
+SLOWEST, FASTEST = 1.0, 360.0  # degrees per second: a turn in six minutes, or in a second
 Color = tuple[float, float, float]  # sRGB, 0..1
 
 
 @dataclass(frozen=True)
 class Shot:
-    """What a camera does; unless it comes nearer than that, the figure is in the image at every frame."""
+    """A camera's settings; at nearness 1 the figure is in the image at every frame."""
 
     screen: tuple[int, int]  # width, height of one eye, pixels
     azimuth: float = 0.0  # radians from the figure's front in the first frame, towards its left
     elevation: float = 0.0
     turning: float = 0.0  # radians per second round the figure, towards its left
-    follow: bool = (
-        False  # go along with the figure, or with what is looked at; else stand where all of the clip is seen
-    )
+    follow: bool = False  # follow the figure, or what is looked at; else stand where all of the clip is seen
     eyes: float | None = None  # metres between two eyes; one eye if None
-    zoom: float = 1.0  # times nearer than all of the figure asks for
+    zoom: float = 1.0  # factor by which the camera is nearer than where all of the figure is seen
     look_at: str | None = None  # joint or part of the body in the middle of the image
 
 
 @dataclass(frozen=True)
 class Look:
-    """What an image, a video or a window shows of an avatar, and from where."""
+    """Settings of an image, a video or a window: what it shows of an avatar, and from where."""
 
     shot: Shot
     toggles: Toggles
     background: Color | None  # None: transparent
-    level: Wanted = FULL  # of detail
+    level: Wanted = FULL  # level of detail
 
 
 def film(shot: Shot, rig: Rig, clip: Clip) -> list[tuple[Camera, ...]]:
@@ -63,13 +61,13 @@ def film(shot: Shot, rig: Rig, clip: Clip) -> list[tuple[Camera, ...]]:
 
 
 def eyes_of(view: Viewpoint, screen: tuple[int, int], eyes: float | None) -> tuple[Camera, ...]:
-    """One eye at a viewpoint, or two so many metres apart."""
+    """One eye at a viewpoint, or two at this distance in metres."""
     camera = view.camera(screen)
     return (camera,) if eyes is None else stereo(camera, eyes)
 
 
 def _framed(shot: Shot, rig: Rig, clip: Clip) -> tuple[Array, Array]:
-    """The box [2, 3] that is to be in the image, and where the camera's target goes [F, 3], metres."""
+    """The box [2, 3] to frame, and the path of the camera's target [F, 3], metres."""
     boxes, roots = frame_boxes(rig, clip), root_positions(rig, clip)
     if shot.look_at is not None:
         places = find_focus(rig, shot.look_at).places(rig.skeleton, clip.rotations, clip.translations)

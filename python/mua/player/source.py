@@ -1,4 +1,4 @@
-"""What a player was asked to play."""
+"""The files that a player plays."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -7,10 +7,10 @@ from pathlib import Path
 
 @dataclass(frozen=True)
 class Source:
-    """Avatars and what moves them."""
+    """Avatars and their motion."""
 
     files: tuple[Path, ...]  # avatars
-    motion: Path | None = None  # in place of the files' own clips
+    motion: Path | None = None  # motion in place of the files' own clips
     mapping: Mapping[str, str] | None = None  # avatar's joint to joint of the motion
-    clip: str | None = None  # to begin with, the first if None
-    frame: int | None = None  # to rest at, played from the start if None
+    clip: str | None = None  # clip to begin with, the first if None
+    frame: int | None = None  # frame to pause at; None: played from the start

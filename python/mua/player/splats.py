@@ -18,13 +18,13 @@ from mua.player.channels import FLOAT, groups
 from mua.player.draw import SortedSplats
 from mua.rig.bounds import union
 
-EYES = 2  # at most
-MOST_SPLATS = (1 << 24) - 1  # that the elements of the sort can tell apart, and from none
+EYES = 2  # eyes at most
+MOST_SPLATS = (1 << 24) - 1  # the most that an element of the sort can index beside the value for none
 PROJECTED = 256  # texels of a group of SplatProject
 SORTED = 2048  # keys of a group of the sort
 DIGITS = 256  # values of 8 bits
 SCANNED = 16  # digits of a group of ScanDigits
-ARGUMENTS = 5  # words: of the draw, and how many splats some eye sees
+ARGUMENTS = 5  # words: the arguments of the draw, and how many splats some eye sees
 
 
 class Posed(Protocol):
@@ -34,7 +34,7 @@ class Posed(Protocol):
     def rig(self) -> RigPlaces: ...
 
     @property
-    def splat_count(self) -> int: ...  # at most that of its first frame
+    def splat_count(self) -> int: ...  # at most the count of its first frame
 
     @property
     def mesh(self) -> Buffer: ...  # [V, 3] canonical vertices
@@ -56,9 +56,9 @@ class SplatFrame(Generic[P]):
     """
 
     def __init__(self, device: Device, avatars: Sequence[P]) -> None:
-        """One avatar at least. Errors: InputError where there are too many splats, for the device or for the sort."""
+        """For at least one avatar. Errors: InputError where there are too many splats for the device or the sort."""
         self.avatars = tuple(avatars)
-        self._seen = (True,) * len(self.avatars)  # by the last sort
+        self._seen = (True,) * len(self.avatars)  # set by the last sort
         if self.splat_count > MOST_SPLATS:
             raise InputError(f"{self.splat_count} splats of all avatars; expected at most {MOST_SPLATS}")
         self._load_kernels(device)
@@ -66,19 +66,19 @@ class SplatFrame(Generic[P]):
 
     @property
     def splat_count(self) -> int:
-        """Of all avatars, as many as they have decoded, each rounded up to an even number."""
+        """Decoded splats of all avatars, each avatar's number rounded up to an even one."""
         return int(self._counts.sum())
 
     @property
     def first_splats(self) -> tuple[int, ...]:
-        """Each avatar's first, of those in view before the others; they are even."""
+        """Index of each avatar's first splat, avatars in view before the others; all are even."""
         order = np.argsort(np.logical_not(self._seen), kind="stable")
         starts = np.cumsum(self._counts[order]) - self._counts[order]
         return tuple(starts[np.argsort(order)].tolist())
 
     @property
     def sorted_count(self) -> int:
-        """Of the avatars that the last sort found in view."""
+        """Splats of the avatars that the last sort found in view."""
         return int(self._counts[list(self._seen)].sum())
 
     @property

@@ -21,7 +21,7 @@ class SurfaceMesh:
 
 
 def surface_mesh(avatar: Avatar) -> SurfaceMesh:
-    """What the file holds; a file without a surface is triangulated here."""
+    """The file's surface; a file without one is triangulated here."""
     surface, texels = avatar.surface, avatar.rig.texels
     if surface is None:
         from mua.rig.triangulate import triangulate  # needs more packages than reading does

@@ -15,10 +15,10 @@ from mua.rig.rig import Rig
 
 
 class TexturedRig:
-    """What SplatFrame draws of a rig: its vertices are posed by the dispatch that ends `AvatarFrame.decode`."""
+    """A rig that SplatFrame draws; its vertices are posed by the last dispatch of `AvatarFrame.decode`."""
 
     def __init__(self, device: Device, rig: Rig) -> None:
-        """Errors: InputError where a buffer is more than the device can bind or hold."""
+        """Upload. Errors: InputError where a buffer is larger than the device can bind or hold."""
         self._rig, self.rig = rig, upload_rig(device, rig)
         self.splat_count, self._vertices = len(rig.texels.texels), len(rig.mesh.vertices)
         self.bounds = np.zeros((2, 3))  # world box of the last pose, metres

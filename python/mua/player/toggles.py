@@ -1,4 +1,4 @@
-"""What is shown of an avatar: splats, detailed geometry, template, skeleton, shadow."""
+"""The layers of an avatar that are shown: splats, detailed geometry, template, skeleton, shadow."""
 
 from dataclasses import dataclass, fields, replace
 
@@ -7,7 +7,7 @@ from mua.errors import InputError
 
 @dataclass(frozen=True)
 class Toggles:
-    """What is shown (paper, section System)."""
+    """Whether each layer is shown (paper, section System)."""
 
     splats: bool = True
     geometry: bool = False  # the texel grid as a lit mesh
@@ -19,7 +19,7 @@ class Toggles:
 def parse_toggles(text: str) -> Toggles:
     """The toggles that a list such as `splats,shadow` names.
 
-    Errors: InputError for a word that is none of them.
+    Errors: InputError for an unknown word.
     """
     names = [field.name for field in fields(Toggles)]
     shown = [word.strip() for word in text.split(",")]

@@ -1,4 +1,4 @@
-"""Videos and animations from images, all of a file or none of it."""
+"""Videos and animations from images, written whole or not at all."""
 
 from collections.abc import Iterator
 from contextlib import suppress
@@ -13,16 +13,16 @@ from mua.arrays import Array
 from mua.errors import InputError
 from mua.files.write import replacing
 
-BT709 = "bt709"  # what players take a video for that is larger than television's; the encoder is told the same
+BT709 = "bt709"  # colour space that players assume for videos larger than SD; the encoder is set to it
 MARKED = ("-colorspace", BT709, "-color_primaries", BT709, "-color_trc", BT709)
 SCALED = f"scale=out_color_matrix={BT709}:out_range=tv"
 MP4 = (
     *("-c:v", "libx264", "-pix_fmt", "yuv420p", "-crf", "18"),  # visually lossless
     *("-vf", SCALED, *MARKED),
-    *("-movflags", "+faststart"),  # a browser may start before it has the whole
+    *("-movflags", "+faststart"),  # a browser may start before it has all of the file
 )
 WEBM = (
-    *("-c:v", "libvpx-vp9", "-crf", "20", "-b:v", "0"),  # of constant quality
+    *("-c:v", "libvpx-vp9", "-crf", "20", "-b:v", "0"),  # constant quality
     *("-row-mt", "1", "-deadline", "good", "-cpu-used", "4"),
     *("-vf", SCALED, *MARKED),
 )
@@ -58,8 +58,8 @@ def write_video(
     with replacing(path) as temporary, TemporaryFile() as said:
         command = [imageio_ffmpeg.get_ffmpeg_exe(), "-y", "-v", "error", *source, *encoding, str(temporary)]
         encoder = Popen(command, stdin=PIPE, stdout=DEVNULL, stderr=said)
-        with suppress(BrokenPipeError), encoder:  # it may stop, and has then said why
-            assert encoder.stdin is not None  # as asked for
+        with suppress(BrokenPipeError), encoder:  # the encoder may stop, and has then said why
+            assert encoder.stdin is not None  # it is piped above
             for picture in chain([first], pictures):
                 encoder.stdin.write(picture.tobytes())
         if encoder.returncode:

@@ -18,14 +18,14 @@ SETTLING = 3  # images after an event: the panel answers a click in the one afte
 LONGEST_STEP = 0.25  # seconds that a clip goes on at once, so that it does not leap after a pause
 SMOOTHING = 0.1  # share of the newest image in the rate
 LEFT = 1  # mouse button
-NOTCH = 100.0  # of a wheel event
+NOTCH = 100.0  # units of a wheel event
 
 
 class Viewer:
     """Draws a session on a canvas and hands the canvas's events to it."""
 
     def __init__(self, canvas: BaseRenderCanvas, device: Device, source: Source, look: Look) -> None:
-        """Errors: InputError as of Session."""
+        """Start a session. Errors: InputError where Session raises it."""
         self._canvas = canvas
         self._context = canvas.get_wgpu_context()
         # Colours are display-referred: the canvas must not encode them once more.
@@ -38,7 +38,8 @@ class Viewer:
         self._gui.backend.io.set_ini_filename("")  # leave no file behind
         self._gui.set_gui(lambda: draw_panel(self.session, rate=self._rate))
         canvas.add_event_handler(self._on_event, *EVENTS)
-        canvas.add_event_handler(self._wake, *EVENTS, order=-100)  # before the panel keeps an event to itself
+        # before the panel, which may keep an event to itself
+        canvas.add_event_handler(self._wake, *EVENTS, order=-100)
         canvas.request_draw(self._draw)
 
     def _draw(self) -> None:

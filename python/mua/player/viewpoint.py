@@ -1,4 +1,4 @@
-"""A camera that a mouse moves: round a target, nearer and farther, and aside."""
+"""A camera that a mouse orbits, zooms and pans."""
 
 from dataclasses import dataclass, replace
 
@@ -7,15 +7,15 @@ import numpy as np
 from mua.arrays import Array
 from mua.avatar.camera import FOV, Camera, near_plane, orbit, perspective
 
-STEEPEST = float(np.radians(89))  # of the elevation, so that up stays up
-NEAREST, FARTHEST = 0.01, 30.0  # times the distance from which all of the figure is seen
-ZOOM_STEP = 1.15  # of the distance, for one notch of the wheel
-TURN = float(np.radians(0.4))  # for one pixel of a drag
+STEEPEST = float(np.radians(89))  # limit of the elevation, so that up stays up
+NEAREST, FARTHEST = 0.01, 30.0  # as factors of the distance from which all of the figure is seen
+ZOOM_STEP = 1.15  # factor of the distance for one notch of the wheel
+TURN = float(np.radians(0.4))  # radians for one pixel of a drag
 
 
 @dataclass(frozen=True, eq=False)
 class Viewpoint:
-    """Where the camera is about its target."""
+    """The camera's place about its target."""
 
     target: Array  # [3] world, metres
     distance: float  # metres
@@ -24,33 +24,33 @@ class Viewpoint:
     framed: float = 3.5  # metres from which all of the figure is seen; those of a person
 
     def turned(self, right: float, down: float) -> "Viewpoint":
-        """After a drag of so many pixels: the figure follows the mouse."""
+        """The viewpoint after a drag by this number of pixels: the figure follows the mouse."""
         elevation = np.clip(self.elevation + TURN * down, -STEEPEST, STEEPEST)
         return replace(self, azimuth=self.azimuth - TURN * right, elevation=float(elevation))
 
     def zoomed(self, notches: float) -> "Viewpoint":
-        """Nearer by so many notches of the wheel, farther where negative."""
+        """The viewpoint nearer by this number of notches of the wheel, farther where negative."""
         distance = np.clip(self.distance * ZOOM_STEP**-notches, NEAREST * self.framed, FARTHEST * self.framed)
         return replace(self, distance=float(distance))
 
     def nearer(self, times: float) -> "Viewpoint":
-        """At a fraction of the distance, so that what is in the middle appears so many times larger."""
+        """The viewpoint at a fraction of the distance, so that the middle appears larger by this factor."""
         return self.zoomed(float(np.log(times) / np.log(ZOOM_STEP)))
 
     def gone_round(self, angle: float) -> "Viewpoint":
-        """Turned by so many radians about the vertical, camera and target, as a figure that turns takes its front."""
+        """Camera and target turned by this angle in radians about the vertical, as when the figure itself turns."""
         c, s = np.cos(angle), np.sin(angle)
         target = np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]]) @ self.target
         return replace(self, target=target, azimuth=self.azimuth + angle)
 
     def panned(self, right: float, down: float, *, height: int) -> "Viewpoint":
-        """After a drag of so many pixels in an image of `height`: what is at the target stays under the mouse."""
+        """The viewpoint after a panning drag in an image of `height`: the target stays under the mouse."""
         metres = 2 * np.tan(FOV / 2) * self.distance / height
         across, up, _ = self.camera((height, height)).view[:3, :3]
         return replace(self, target=self.target + metres * (down * up - right * across))
 
     def camera(self, screen: tuple[int, int]) -> Camera:
-        """The view on a screen of so many pixels."""
+        """The camera for a screen of this size in pixels."""
         at = orbit(np.stack([self.target] * 2), screen=screen, azimuth=self.azimuth, elevation=self.elevation)
         view = at.view.copy()
         view[:3, 3] = [0, 0, -self.distance] - view[:3, :3] @ self.target
@@ -65,7 +65,7 @@ def framing(
     azimuths: Array,  # [N] radians, as mua.avatar.camera.orbit: all from which the box is going to be seen
     elevation: float = 0.0,
 ) -> Viewpoint:
-    """At the first azimuth, at the distance from which all of a box is in the image from each of them."""
+    """The viewpoint at the first azimuth, at a distance from which all of a box is in the image from each azimuth."""
     target = np.mean(bounds, axis=0)
     places = [orbit(bounds, screen=screen, azimuth=a, elevation=elevation).position for a in np.unique(azimuths)]
     distance = float(np.linalg.norm(np.array(places) - target, axis=-1).max())

@@ -36,13 +36,13 @@ def show(source: "Source", look: "Look", *, device: str | None = None) -> None:
 
 
 def require_display() -> None:
-    """Raises InputError where there is none, as far as that can be told without loading anything."""
+    """Raise InputError where there is no display, as far as is known without loading anything."""
     if sys.platform.startswith("linux") and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
         raise InputError(MISSING)
 
 
 def _open_canvas(size: tuple[int, int]) -> tuple["BaseRenderCanvas", Any]:
-    """A window of so many logical pixels and the loop that runs it; InputError where there is no display."""
+    """A window of this size in logical pixels and the loop that runs it; InputError where there is no display."""
     import glfw  # here: with rendercanvas below it starts GLFW
 
     with warnings.catch_warnings():

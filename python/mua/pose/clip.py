@@ -10,12 +10,12 @@ from mua.arrays import Array
 from mua.errors import InputError
 from mua.pose.skeleton import Pose
 
-RANGE_OF_MOTION = "range of motion: "  # names of clips of the built-in range of motion begin so
+RANGE_OF_MOTION = "range of motion: "  # prefix of the clip names of the built-in range of motion
 
 
 @dataclass(frozen=True, eq=False)
 class Stretches:
-    """What rigid joints cannot carry: some scale or shear the surface about themselves, before they move it."""
+    """Scales and shears of the surface about some joints, applied before the rigid joints move it."""
 
     joints: Array  # [K] int, ascending
     matrices: Array  # [F, K, 3, 3] in the axes of the bind pose; the identity does nothing
@@ -25,7 +25,7 @@ class Stretches:
 class Clip:
     """Poses at a steady rate; local rotations and translations of every joint.
 
-    Stretches are for teachers alone, who put them into the surface; no file holds them.
+    Stretches are for teachers alone, which apply them to the surface; no file holds them.
     """
 
     name: str
@@ -48,7 +48,7 @@ class Clip:
         return Pose(self.rotations[index], self.translations[index])
 
     def cut(self, frames: slice | Array) -> Self:
-        """The same clip with these frames alone."""
+        """The clip with these frames alone."""
         kept = self.stretches
         stretches = None if kept is None else replace(kept, matrices=kept.matrices[frames])
         return replace(
@@ -56,7 +56,7 @@ class Clip:
         )
 
     def then(self, other: "Clip") -> Self:
-        """This clip and `other`, of the same skeleton and with the same joints stretched, as one of this name."""
+        """This clip followed by `other`, which has the same skeleton and stretched joints, under this name."""
         stretches = self.stretches
         if stretches is not None and other.stretches is not None:
             matrices = np.concatenate([stretches.matrices, other.stretches.matrices])
@@ -72,5 +72,5 @@ def is_range(name: str) -> bool:
 
 
 def is_averaged(name: str, *, held_out: bool) -> bool:
-    """Whether a recording's mean is over the frames of such a clip: those of the user's training motion."""
+    """Whether a recording's mean includes the frames of such a clip, as for the user's training motion."""
     return not held_out and not is_range(name)

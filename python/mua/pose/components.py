@@ -1,4 +1,4 @@
-"""Principal components of the motion descriptor, held within what training showed: what the networks read.
+"""Principal components of the motion descriptor, limited to the range of training: the input of the networks.
 
 ReLU networks extrapolate linearly, and live motion always leaves the poses of training. Along the principal components
 of what a joint does in a window the range of training is a tight box.
@@ -10,21 +10,21 @@ from mua.arrays import Array
 from mua.pose.encoding import Components, Normalization
 
 INPUT_FLOOR = 1.0  # variance added to each direction of the normalised descriptors; measured on held-out CMU walks
-LEAST_SPREAD = 1e-4  # of the largest component's deviation: directions that vary less are not read
-MARGIN = 0.1  # of a component's range
-JITTER = np.radians(1.0)  # of each joint, and as many metres of each length: what every component may go beyond
+LEAST_SPREAD = 1e-4  # share of the largest component's deviation; directions that vary less are dropped
+MARGIN = 0.1  # margin as a share of a component's range
+JITTER = np.radians(1.0)  # in each joint, and as many metres in each length: the least margin of every component
 
 
 def principal_components(
     descriptors: Array,  # [N, D] of the training frames
     normalization: Normalization,
-    units: Array,  # [D] as of `mua.pose.descriptor.units_of`
-    groups: Array,  # [D] the group of each number, as of `mua.pose.descriptor.groups_of`
+    units: Array,  # [D] from `mua.pose.descriptor.units_of`
+    groups: Array,  # [D] the group of each number, from `mua.pose.descriptor.groups_of`
 ) -> Components:
     """The whitened components of training descriptors and their ranges, rounded as a file stores them.
 
     A window's poses are nearly alike; velocities are its weak directions, and a network that sees the descriptor as it
-    is learns them last. The floor keeps directions that hold only noise from being raised to the others' level. Every
+    is fits them last. The floor keeps directions that hold only noise from being raised to the others' level. Every
     joint has components of its own, so that an arm in a new pose bounds nothing of the legs; those of how it is turned
     in the world are apart from those of its angles, so that a network can follow either.
     """
@@ -60,7 +60,7 @@ def read_components(
     components: Components,
     descriptors: Array,  # [..., D]
 ) -> tuple[Array, Array]:
-    """What the networks read [..., K] of descriptors, and how far outside of training each is [...], 0 to 1.
+    """The networks' input [..., K] for descriptors, and how far outside of training each is [...], 0 to 1.
 
     The second is the share of a pose that training did not show: the length of what the ranges take off its components,
     relative to the components' own; 0 within them.
@@ -73,7 +73,7 @@ def read_components(
 
 
 def hold(found: Array, components: Components) -> Array:
-    """Components [..., K] as they are within their ranges, softly held within the margins beyond."""
+    """Components [..., K], unchanged within their ranges and softly limited to the margins beyond."""
     low, high = components.ranges
     nearest = np.clip(found, low, high)
     beyond = np.abs(found - nearest)

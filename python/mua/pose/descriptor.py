@@ -1,4 +1,4 @@
-"""The motion descriptor: what the MLPs read of a window of poses (mua.pose.encoding; paper, Data Assumption)."""
+"""The motion descriptor: the MLPs' view of a window of poses (mua.pose.encoding; paper, Data Assumption)."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,13 +12,13 @@ from mua.pose.encoding import Normalization, PoseEncoding
 from mua.pose.skeleton import Skeleton
 
 STILL = np.radians(0.1)  # standard deviation below which a joint counts as not moving
-MOVES = 1e-3  # of the character's size; standard deviation below which a joint counts as not translated
-SCALE_FLOOR = 1e-3  # a millimetre of a person of 1.75 m, or 0.06 degrees: what varies less is not stretched
+MOVES = 1e-3  # share of the character's size: standard deviation below which a joint counts as not translated
+SCALE_FLOOR = 1e-3  # a millimetre for a person of 1.75 m, or 0.06 degrees: smaller variation is not scaled up
 
 
 @dataclass(frozen=True, eq=False)
 class _Frames:
-    """What every frame adds to the windows that hold it."""
+    """The contribution of each frame to the windows that contain it."""
 
     position: Array  # [F, 3] world position of the root, metres
     turn: Array  # [F, 4] world rotation of the root relative to bind
@@ -32,7 +32,7 @@ def describe(
     rotations: Array,  # [F, J, 4] local, unit
     translations: Array,  # [F, J, 3] local, metres
     *,
-    windows: Array | None = None,  # [N, k] frames of each window, newest first; None: those that end at every frame
+    windows: Array | None = None,  # [N, k] frames of each window, newest first; None: a window ending at every frame
 ) -> Array:
     """Descriptors [N, D] float64 of windows of a clip; before its first frame, the clip is held still."""
     if windows is None:
@@ -73,7 +73,7 @@ def choose_translated(
 ) -> tuple[int, ...]:
     """Joints whose local translation is encoded: those in use, not above the root, where it varies over all `clips`.
 
-    What is above the root moves the whole character, of which the descriptor tells the root's path alone.
+    What is above the root moves the whole character, of which the descriptor holds the root's path alone.
     """
     varies = np.concatenate([clip.translations for clip in clips]).std(axis=0).max(axis=-1) > MOVES * skeleton.size
     above = set(skeleton.ancestors(skeleton.root))
@@ -82,7 +82,7 @@ def choose_translated(
 
 def normalization(
     descriptors: Array,  # [N, D]
-    units: Array,  # [D] as of `units_of`
+    units: Array,  # [D] from `units_of`
 ) -> Normalization:
     """Mean and scale of descriptors; columns that hardly vary keep a scale of one unit."""
     deviation = descriptors.std(axis=0)
@@ -91,14 +91,14 @@ def normalization(
 
 def units_of(
     encoding: PoseEncoding,
-    size: float,  # of the figure over that of a person
+    size: float,  # size of the figure over that of a person
 ) -> Array:
-    """How much of each column [D] of a descriptor is as much as 1 on a person: lengths grow with the figure."""
+    """The unit of each column [D] of a descriptor: lengths scale with the figure, relative to a person."""
     return np.array([size if part.lengths else 1.0 for part in encoding.parts for _ in range(part.width)])
 
 
 def groups_of(encoding: PoseEncoding) -> Array:
-    """Which numbers of a descriptor vary together: those of the root, of a joint in its parent, or of it in the world.
+    """The groups of a descriptor's numbers that vary together: the root, a joint in its parent, or it in the world.
 
     [D] the group of each.
     """

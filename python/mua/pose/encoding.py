@@ -9,7 +9,7 @@ RATE = 30.0  # frames per second between the poses of a window: in every teacher
 
 
 class Part(NamedTuple):
-    """Numbers of a descriptor that belong together."""
+    """Consecutive numbers of a descriptor that describe one thing."""
 
     joint: int | None  # None: the root
     width: int

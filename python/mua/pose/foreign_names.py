@@ -1,4 +1,4 @@
-"""What joints are called in other languages than English.
+"""Names of joints in languages other than English.
 
 Japanese names are those of MikuMikuDance.
 """

@@ -1,4 +1,4 @@
-"""What a joint is, by its name: a body part and a side behind every naming habit.
+"""The role of a joint by its name: a body part and a side behind every naming convention.
 
 A role is a part ("hips", "spine", "neck", "head") or a side and a part ("left thigh"). Several joints of one chain
 may share a role (CMU's lowerneck and upperneck are the neck); they are listed from the root outwards.
@@ -87,15 +87,15 @@ _RIG_PREFIX = re.compile(
     re.IGNORECASE,
 )
 _WORD = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+")
-_FBX_ESCAPE = re.compile(r"FBXASC(\d{3})")  # a character that Maya allows in no name, by its code
+_FBX_ESCAPE = re.compile(r"FBXASC(\d{3})")  # Maya writes characters that names may not have by their code
 _NUMBERED_FINGER = re.compile(r"finger[\s_.\-]?(\d)", re.IGNORECASE)
 
 
 def roles(
     skeleton: Skeleton,
-    said: Mapping[str, str] | None = None,  # joint name to role, one of ROLES, where its file itself says it
+    said: Mapping[str, str] | None = None,  # joint name to one of ROLES, where the file states it
 ) -> Roles:
-    """Joints of every role, from the root outwards: by what the file says, else by what their names give away."""
+    """Joints of every role, from the root outwards: from the file where it states them, else from the names."""
     found: dict[str, list[int]] = {}
     first_finger = _first_finger(skeleton)
     for joint, name in enumerate(skeleton.names):
@@ -106,10 +106,10 @@ def roles(
         _settle_side(found, side)
         _leave_out_targets(skeleton, found, side)
     chains = {role: _one_chain(skeleton, joints) for role, joints in found.items()}
-    told = _told(skeleton, said or {})
-    taken = {joint for joints in told.values() for joint in joints}
+    stated = _stated(skeleton, said or {})
+    taken = {joint for joints in stated.values() for joint in joints}
     left = {role: tuple(joint for joint in joints if joint not in taken) for role, joints in chains.items()}
-    chains = {role: joints for role, joints in left.items() if joints and role not in told} | told
+    chains = {role: joints for role, joints in left.items() if joints and role not in stated} | stated
     _keep_to_limbs(skeleton, chains)
     _settle_legs(skeleton, chains)
     _settle_trunk(skeleton, chains)
@@ -117,12 +117,12 @@ def roles(
 
 
 def limb_count(skeleton: Skeleton) -> int:
-    """How many of the eight bones of arms and legs the joints' names tell."""
+    """How many of the eight bones of arms and legs the joints' names identify."""
     found = roles(skeleton)
     return sum(f"{side} {part}" in found for side in SIDES for part in ("upper_arm", "forearm", "thigh", "shin"))
 
 
-def _told(skeleton: Skeleton, said: Mapping[str, str]) -> Roles:
+def _stated(skeleton: Skeleton, said: Mapping[str, str]) -> Roles:
     found: dict[str, list[int]] = {}
     for joint, name in enumerate(skeleton.names):
         if name in said:
@@ -136,9 +136,9 @@ def _role(name: str, first_finger: int) -> str | None:
         return _wide_role(name)
     bare = _RIG_PREFIX.sub("", NAMESPACE.sub("", name))
     words = [word.lower() for word in _WORD.findall(bare)]
-    told = _SIDE if _SIDE.keys() & set(words) else FOREIGN_SIDE
-    sides = [told[word] for word in words if word in told]
-    kept = [word for word in words if word not in told and word not in _NO_PART]
+    side_words = _SIDE if _SIDE.keys() & set(words) else FOREIGN_SIDE
+    sides = [side_words[word] for word in words if word in side_words]
+    kept = [word for word in words if word not in side_words and word not in _NO_PART]
     part = "".join(kept)
     for side in SIDES:
         if not sides and part not in _CENTRAL_PART and (part.startswith(side) or part.endswith(side)):
@@ -161,7 +161,7 @@ def _without_accents(name: str) -> str:
 
 
 def _wide_role(name: str) -> str | None:
-    """By names in Chinese and Japanese, whose digits may be wide ones; anything more in the name is a helper joint."""
+    """The role of a Chinese or Japanese name, whose digits may be wide ones; longer names are helper joints."""
     part = unicodedata.normalize("NFKC", name).strip().rstrip("0123456789")
     side = WIDE_SIDE.get(part[:1])
     if side is None:
@@ -196,7 +196,7 @@ def _settle_side(found: dict[str, list[int]], side: str) -> None:
 
 
 def _leave_out_targets(skeleton: Skeleton, found: dict[str, list[int]], side: str) -> None:
-    """Where some joints of a name hang on the limb above and others do not, the others are what IK aims at."""
+    """Drop IK targets: joints that share a name with joints of the limb but do not hang on the limb above."""
     for upper, lower in _BELOW.items():
         above = set(found.get(f"{side} {upper}", []))
         hanging = [j for j in found.get(f"{side} {lower}", []) if above & set(skeleton.ancestors(j))]
@@ -205,7 +205,7 @@ def _leave_out_targets(skeleton: Skeleton, found: dict[str, list[int]], side: st
 
 
 def _keep_to_limbs(skeleton: Skeleton, chains: Roles) -> None:
-    """Leave twist joints, which share a limb's name beside the way to its end, out of the limb."""
+    """Leave twist joints out of a limb: they share its name but are not on the way to its end."""
     for role, joints in chains.items():
         side, _, part = role.rpartition(" ")
         below = chains.get(f"{side} {_BELOW.get(part)}")

@@ -1,4 +1,4 @@
-"""How far joints are from each other along the skeleton."""
+"""Distances between joints along the skeleton."""
 
 import numpy as np
 
@@ -7,18 +7,18 @@ from mua.pose.skeleton import Skeleton
 
 
 def joint_steps(skeleton: Skeleton, seen: list[int]) -> Array:
-    """Joints from one of `seen` to another along the skeleton, [n, n] int64; those not in `seen` are passed over.
+    """Steps from each of `seen` to each other along the skeleton, [n, n] int64, counting joints of `seen` only.
 
     What has none of `seen` above it hangs on the first of them.
     """
-    steps = np.full((len(seen), len(seen)), len(seen))  # more than any way along the tree
+    steps = np.full((len(seen), len(seen)), len(seen))  # longer than any path along the tree
     np.fill_diagonal(steps, 0)
     carrier = nearest_encoded(skeleton, seen)
     for column, joint in enumerate(seen[1:], start=1):
         parent = int(skeleton.parents[joint])
         above = carrier[parent] if parent >= 0 else 0
         steps[column, above] = steps[above, column] = 1
-    for via in range(len(seen)):  # Floyd and Warshall
+    for via in range(len(seen)):  # Floyd-Warshall
         steps = np.minimum(steps, steps[:, via, None] + steps[via])
     return steps
 

@@ -27,7 +27,7 @@ def sample(
     *,
     rate: float,
 ) -> Clip:
-    """Those of the frames that `clip` has at `rate` frames per second."""
+    """The clip at these frames, counted at `rate` frames per second."""
     if rate == clip.rate:
         return clip.cut(frames)
     last = len(clip) - 1

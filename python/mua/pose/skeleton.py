@@ -11,7 +11,7 @@ from mua.arrays import Array
 
 @dataclass(frozen=True, eq=False)
 class Pose:
-    """One moment of a skeleton: what moves each joint relative to its parent."""
+    """One moment of a skeleton: the motion of each joint relative to its parent."""
 
     rotations: Array  # [J, 4] local joint rotations, unit, wxyz
     translations: Array  # [J, 3] local joint translations, metres
@@ -22,7 +22,7 @@ class Skeleton:
     """Joints in parent-before-child order; metres, Y up, right-handed; column vectors.
 
     Every transform is rigid: scales of the source are folded into the mesh. Joint `root` (the hips of
-    a person) is the one whose path through the world is that of the character.
+    a person) is the one whose path through the world is the character's.
     """
 
     names: tuple[str, ...]

@@ -19,7 +19,7 @@ def moments(
     encoding: PoseEncoding,
     poses: int,
 ) -> Array:
-    """When each of so many poses up to a frame is, newest first: [F, poses] in frames at the encoding's rate.
+    """Times of the poses up to each frame, newest first: [F, poses] in frames at the encoding's rate.
 
     Before its first frame, a clip is held still.
     """

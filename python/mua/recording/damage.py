@@ -1,4 +1,4 @@
-"""Whether a recording is as the writer of a plan left it, to the byte; a bake asks before it goes on from one."""
+"""Checks that a recording is byte for byte as its writer left it, before a bake goes on from it."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -27,12 +27,12 @@ from mua.recording.record import PlannedClip
 
 def check(
     directory: Path,
-    plan: Sequence[PlannedClip],  # that it was recorded by
+    plan: Sequence[PlannedClip],  # plan by which it was recorded
     *,
     rate: float,
     whole: bool,  # whether every clip is complete
 ) -> None:
-    """Raise InputError, a sentence that names the file, where anything is not as the plan's writer left it."""
+    """Raise InputError, a sentence that names the file, where anything differs from what the plan's writer left."""
     recording = Recording(directory)
     if recording.header != Header.of(recording.rig, rate=rate, wavelet=WAVELET):
         raise InputError(f"{directory / HEADER}: differs from the header that was written")
@@ -54,7 +54,7 @@ def _check_sums(shard: Path, index: Index, header: Header, *, last: bool) -> Non
     names += [f"{whole_name(row)}.npy" for row in index.whole_rows]
     if {SUM, *names} != set(index.crc32):
         raise InputError(f"{shard / INDEX}: lists other files than its frames need")
-    for name in [*names, SUM] if last else names:  # only the last sum is kept
+    for name in [*names, SUM] if last else names:  # only the last shard keeps its sum
         check_sum(shard / name, index)
 
 
@@ -78,7 +78,7 @@ def _check_indices(directory: Path, indices: Sequence[Index], plan: Sequence[Pla
 
 
 def _kept(planned: PlannedClip, segment: Segment) -> list[int]:
-    """The frames of a segment that are kept whole, as far as the plan says so."""
+    """The frames of a segment that the plan keeps whole."""
     return segment.whole if planned.whole is None else sorted(planned.whole & set(segment.recorded))
 
 

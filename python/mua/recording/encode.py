@@ -1,4 +1,4 @@
-"""What a recording keeps of a texture: its difference from the reference frame, and the dynamic subbands of that."""
+"""The encoding of a texture: its difference from the reference frame, and the dynamic subbands of that."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -70,8 +70,8 @@ def check_range(
     texels: Array,  # [N] row * size + col
     size: int,
 ) -> None:
-    """Raises InputError for the first value that is not finite, or too far from the reference for half precision."""
-    if np.abs(difference).max(initial=0) <= HALF_MAX:  # false for nan as well
+    """Raise InputError for the first value that is not finite, or too far from the reference for half precision."""
+    if np.abs(difference).max(initial=0) <= HALF_MAX:  # also false for nan
         return
     texel, channel = np.argwhere(~(np.abs(difference) <= HALF_MAX))[0]
     row, column = divmod(int(texels[texel]), size)
@@ -113,7 +113,7 @@ def save_reference(path: Path, reference: Reference) -> None:
 
 
 def load_reference(path: Path, header: Header) -> Reference:
-    """Raises InputError for a file that is missing, damaged or of other sizes."""
+    """Load a reference. Raises InputError for a file that is missing, damaged or of other sizes."""
     shapes = {name: shape[1:] for name, (shape, _) in header.shapes(0, 1).items() if name in ("ll", "d3", "d2")}
     shapes["texture"] = (header.valid_texels, CHANNELS)
     arrays = read_npz(path, shapes)

@@ -1,4 +1,4 @@
-"""The files of a recording: their names, what the JSON among them says, and the shapes of arrays."""
+"""The files of a recording: their names, the content of the JSON files and the shapes of the arrays."""
 
 import json
 import mmap
@@ -17,7 +17,7 @@ from mua.recording.rig_file import rig_hash
 from mua.rig.rig import Rig
 
 VERSION = 2
-WAVELET = "bior4.4"  # unless a writer is told another
+WAVELET = "bior4.4"  # the default of a writer
 HEADER, RIG, REFERENCE, SHARDS = "recording.json", "rig.npz", "reference.npz", "shards"
 INDEX, SUM = "index.json", "sum.npy"
 BLOCK = 1 << 20  # bytes of a file at once
@@ -25,7 +25,7 @@ BLOCK = 1 << 20  # bytes of a file at once
 
 @dataclass(frozen=True)
 class Header:
-    """What all frames of a recording share."""
+    """Properties that all frames of a recording share."""
 
     version: int
     rig: str  # SHA-256
@@ -65,18 +65,18 @@ class Segment:
     start: int  # index in the clip of the first
     poses: int
     recorded: list[int]  # indices in the clip of the frames with mesh and subbands, ascending
-    whole: list[int]  # those of them that are kept whole
+    whole: list[int]  # the ones among them that are kept whole
 
 
 @dataclass(frozen=True)
 class Index:
-    """What one shard holds; its frames are those of its segments, one after the other."""
+    """The content of one shard: its frames are those of its segments in order."""
 
     segments: list[Segment]
     complete: list[str]  # clips that ended in this shard
     training_frames: int  # number of frames in the running sum, from the first shard to this one
-    crc32: dict[str, int]  # of the shard's other files
-    rig: str = ""  # SHA-256 of the frames' rig; shards written before it was kept have none
+    crc32: dict[str, int]  # checksums of the shard's other files
+    rig: str = ""  # SHA-256 of the frames' rig; may be missing
 
     @property
     def poses(self) -> int:
@@ -98,7 +98,7 @@ def write_header(directory: Path, header: Header) -> None:
 
 
 def read_header(directory: Path) -> Header:
-    """Raises InputError where `directory` is no recording, or one of a newer version."""
+    """Read a header. Raises InputError where `directory` is no recording, or one of a newer version."""
     path = directory / HEADER
     if not path.is_file():
         raise InputError(f"{directory}: not a recording, it holds no {HEADER}")
@@ -162,7 +162,7 @@ def open_array(path: Path, shape: tuple[int, ...], dtype: str) -> Array:
 
 
 def check_sum(path: Path, index: Index) -> None:
-    """Raise InputError where a shard's file has not the checksum that was taken when it was written."""
+    """Raise InputError where a shard's file has another checksum than when it was written."""
     found = 0
     with path.open("rb") as file:
         while block := file.read(BLOCK):
@@ -174,7 +174,7 @@ def check_sum(path: Path, index: Index) -> None:
 
 
 def forget(array: Array) -> None:
-    """Take a mapped file's pages out of this process's memory: they are mapped again where they are needed again.
+    """Drop a mapped file's pages from this process's memory; they are mapped again when they are next read.
 
     The system keeps what it read of a file as long as it has room, but counts pages that are mapped as used.
     """

@@ -2,7 +2,7 @@
 
 A part is a recording like any other, in a directory beside the final one. All parts store differences from the same
 texture, so that joining is no more than listing the shards one after the other and adding up the sums. How a plan is
-divided follows from the plan alone: whoever records the parts, the joined recording has the same bytes.
+divided follows from the plan alone: whichever process records the parts, the joined recording has the same bytes.
 """
 
 import os
@@ -60,13 +60,13 @@ def divide(plan: Sequence[PlannedClip]) -> list[list[PlannedClip]]:
 
 
 def longest_first(parts: Sequence[Sequence[PlannedClip]]) -> list[int]:
-    """The order in which parts are taken up, so that no long one is left to a single process at the end."""
+    """The order in which parts are recorded, so that no long one is left to a single process at the end."""
     lengths = [sum(len(planned.clip) for planned in part) for part in parts]
     return sorted(range(len(parts)), key=lambda part: (-lengths[part], part))
 
 
 def share(parts: Sequence[Sequence[PlannedClip]], rank: int, count: int) -> list[int]:
-    """The parts that one of `count` processes records: each in turn goes to who has the least to do so far."""
+    """The parts that one of `count` processes records; each part goes to the process with the least work so far."""
     loads = np.zeros(count)
     mine = []
     for part in longest_first(parts):
@@ -79,7 +79,7 @@ def share(parts: Sequence[Sequence[PlannedClip]], rank: int, count: int) -> list
 
 def record_together(
     teacher: Teacher,
-    plan: Sequence[PlannedClip],  # the same in all processes
+    plan: Sequence[PlannedClip],  # equal in all processes
     directory: PathLike,
     *,
     processes: Processes,
@@ -88,7 +88,7 @@ def record_together(
 ) -> None:
     """Record a plan by all processes at once, each its share; the first one joins the parts when the last has ended.
 
-    `progress` hears how many wanted frames of its own share a process has recorded. Raises InputError as
+    `progress` is called with how many wanted frames of its own share a process has recorded. Raises InputError as
     `TeacherWriter`, `record` and `join_parts` do.
     """
     directory = as_path(directory, "directory")
@@ -102,10 +102,10 @@ def record_together(
 
 def record_share(
     teacher: Teacher,
-    plan: Sequence[PlannedClip],  # the whole of it, the same in all processes
-    directory: PathLike,  # of the joined recording
+    plan: Sequence[PlannedClip],  # the full plan, equal in all processes
+    directory: PathLike,  # directory of the joined recording
     *,
-    rank: int,  # which of the processes this is, from 0
+    rank: int,  # this process's number, from 0
     count: int,
     rate: float,
     shard_frames: int = 32,
@@ -133,10 +133,10 @@ def record_share(
 
 def record_part(
     teacher: Teacher,
-    clips: Sequence[PlannedClip],  # of the part
-    directory: Path,  # of the part
+    clips: Sequence[PlannedClip],  # clips of the part
+    directory: Path,  # directory of the part
     *,
-    reference: Callable[[], Array],  # the texture that all parts refer to; asked for where a part begins
+    reference: Callable[[], Array],  # the texture that all parts refer to; called when a part begins
     rate: float,
     shard_frames: int = 32,
     progress: Callable[[int], None] = lambda done: None,
@@ -160,7 +160,7 @@ def recorded(clips: Sequence[PlannedClip], directory: Path) -> tuple[int, bool]:
 
 
 def first_texture(teacher: Teacher, plan: Sequence[PlannedClip]) -> Array:
-    """The texture [N, 23] that a single process would record first, hence refer all others to."""
+    """The texture [N, 23] that a single process would record first and use as the reference of all others."""
     for planned in plan:
         if planned.wanted:
             for frame in played(teacher, planned, frozenset({min(planned.wanted)})):
@@ -170,12 +170,12 @@ def first_texture(teacher: Teacher, plan: Sequence[PlannedClip]) -> Array:
 
 
 def part_directory(directory: Path, part: int, parts: int) -> Path:
-    """Where one of so many parts is recorded, counted from 0."""
+    """The directory of a part, counted from 0."""
     return directory.with_name(f"{directory.name}.part-{part + 1}-of-{parts}")
 
 
 def remove_leftovers(directory: Path, parts: int) -> None:
-    """Remove shards that processes which have ended left half written in their parts; they may fill a disk."""
+    """Remove half-written shards that ended processes left in their parts; they may fill a disk."""
     for part in range(parts):
         for left in (part_directory(directory, part, parts) / SHARDS).glob(".*.part"):
             shutil.rmtree(left, ignore_errors=True)
@@ -252,14 +252,14 @@ def _join_shards(sources: Sequence[Path], target: Path) -> None:
 
 
 def _store_sum(shard: Path, index: Index, total: Array) -> None:
-    """The last shard holds the sum over all of them."""
+    """Store the sum over all shards in the last one."""
     np.save(shard / SUM, total, allow_pickle=False)
     crc = {**index.crc32, SUM: zlib.crc32((shard / SUM).read_bytes())}
     (shard / INDEX).write_bytes(to_json(replace(index, crc32=crc)))
 
 
 def _link(source: Path, target: Path) -> None:
-    """The same file under another name; a copy where the file system has no links."""
+    """Link a file under another name, or copy it where the file system has no links."""
     try:
         os.link(source, target)
     except OSError:

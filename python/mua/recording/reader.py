@@ -64,10 +64,10 @@ class _Shard:
     directory: Path
     index: Index
     arrays: dict[str, Array]  # memory maps by name
-    sound: set[str] = field(default_factory=set)  # the arrays whose checksum was found right
+    sound: set[str] = field(default_factory=set)  # arrays whose checksum was verified
 
     def read(self, name: str) -> Array:
-        """An array; raises InputError where its file, held against its checksum the first time, is damaged."""
+        """An array; its checksum is verified the first time. Raises InputError where the file is damaged."""
         if name not in self.sound:
             check_sum(self.directory / f"{name}.npy", self.index)
             self.sound.add(name)
@@ -75,14 +75,14 @@ class _Shard:
 
 
 class Recording:
-    """The finished shards of a recording; what is read of them is held against their checksums.
+    """The finished shards of a recording; the files that are read are verified by their checksums.
 
     Rows of training (`held_out=False`) and of held-out frames are counted apart, each in the order of recording: clip
     after clip as `clips` lists them, within a clip as its `recorded` does. Values are absolute, in the teacher's units.
     """
 
     def __init__(self, directory: PathLike) -> None:
-        """Raises InputError, a sentence that names the file, for anything missing, cut short or of another shape."""
+        """Raise InputError, a sentence that names the file, for anything missing, cut short or of another shape."""
         self.directory = as_path(directory, "directory")
         self.header = read_header(self.directory)
         self.rate, self.wavelet = self.header.rate, self.header.wavelet
@@ -113,7 +113,7 @@ class Recording:
 
     def subbands(
         self,
-        channels: slice,  # of the 23
+        channels: slice,  # among the 23
         rows: Rows,
         *,
         held_out: bool = False,
@@ -124,7 +124,7 @@ class Recording:
         bands = []
         for name, part in (("ll", (channels,)), ("d3", (slice(None), channels)), ("d2", (slice(None), channels))):
             gathered = self._gather(name, at, part)
-            gathered += getattr(reference, name)[part]  # in place: of all frames this is large
+            gathered += getattr(reference, name)[part]  # in place, because all frames together are large
             bands.append(torch.from_numpy(gathered))
         return Bands(*bands)
 
@@ -134,7 +134,7 @@ class Recording:
 
     def mean_texture(self) -> Array:
         """The mean [N, 23] float64 over all training frames, at full precision and not only over those kept whole."""
-        count = self._averaged_frames  # asked first: without frames there is no sum
+        count = self._averaged_frames  # checked first: without frames there is no sum
         mean = self._sum / count
         mean += self.reference.texture
         return mean
@@ -167,7 +167,7 @@ class Recording:
                     yield WholeFrame(by_name[segment.clip], frame, mesh, texture)
 
     def fingerprint(self) -> str:
-        """A SHA-256 that changes with anything recorded."""
+        """A SHA-256 that changes with any recorded frame."""
         digest = hashlib.sha256()
         for name in (HEADER, REFERENCE):
             path = self.directory / name
@@ -191,7 +191,7 @@ class Recording:
         return self.count()
 
     def _at(self, rows: Rows, *, held_out: bool) -> Array:
-        """Shard and row in it [F, 2] of recorded frames; raises InputError for a row that there is not."""
+        """Shard and row in it [F, 2] of recorded frames; raises InputError for a missing row."""
         asked, count = np.asarray(rows, dtype=np.int64), self.count(held_out)
         wrong = asked[(asked < 0) | (asked >= count)]
         if wrong.size:
@@ -203,9 +203,9 @@ class Recording:
         self,
         name: str,
         places: Array,  # [F, 2] shard, row
-        part: tuple[slice, ...],  # of each row
+        part: tuple[slice, ...],  # within each row
     ) -> Array:
-        """Rows [F, ...] of one array, out of as many shards as they lie in, as float32."""
+        """Gather rows [F, ...] of one array from their shards, as float32."""
         if not len(places):
             shape = self.header.shapes(1, 1)[name][0]
             return np.zeros(shape, np.float32)[(slice(0), *part)]
@@ -218,12 +218,12 @@ class Recording:
             picked[here] = rows
             forget(self._shards[number].arrays[name])
         assert picked is not None
-        if not math.isfinite(picked.sum(dtype=np.float64)):  # one pass over what is at hand; a place is sought after
+        if not math.isfinite(picked.sum(dtype=np.float64)):  # one cheap pass; the place is found only after a failure
             self._refuse(name, places, picked)
         return picked
 
     def _refuse(self, name: str, places: Array, picked: Array) -> None:
-        """Raise InputError for the first frame of `picked` [F, ...] that holds a number that is none."""
+        """Raise InputError for the first frame of `picked` [F, ...] that holds a value that is not finite."""
         finite = np.isfinite(picked).reshape(len(picked), -1).all(axis=1)
         number, row = places[int(np.argmin(finite))]
         shard = self._shards[number]
@@ -236,7 +236,7 @@ def not_finite(path: Path, where: str) -> InputError:
 
 
 def _open(directory: Path, number: int, index: Index, header: Header) -> _Shard:
-    """Map every array of a shard, whereby its presence, size, shape and type are checked."""
+    """Map every array of a shard, which checks its presence, size, shape and type."""
     expected = header.shapes(index.poses, index.frames)
     for row in index.whole_rows:
         expected[whole_name(row)] = ((header.valid_texels, CHANNELS), "<f2")

@@ -13,13 +13,13 @@ from mua.teacher import Teacher, TeacherFrame
 
 @dataclass(frozen=True)
 class PlannedClip:
-    """What is to be recorded of one clip."""
+    """The frames to record of one clip."""
 
     clip: Clip
     held_out: bool
     wanted: frozenset[int]  # frames with mesh and texture; of all others the pose alone is recorded
-    whole: frozenset[int] | None = None  # those of `wanted` kept whole; None: every n-th, as the writer was told
-    run_up: Clip | None = None  # what comes before it: played, so that cloth is in motion when it begins, not recorded
+    whole: frozenset[int] | None = None  # frames of `wanted` kept whole; None: every n-th, by the writer's setting
+    run_up: Clip | None = None  # poses before it, played but not recorded, so that cloth is in motion when it begins
 
 
 def record(
@@ -32,7 +32,7 @@ def record(
     """Record the planned frames of all clips, going on where an earlier run of the same plan stopped.
 
     A teacher depends on its history, so a half recorded clip is played again from its start and only what is not yet
-    stored is added. `progress` hears how many of all wanted frames are recorded, earlier runs included.
+    stored is added. `progress` is called with how many of all wanted frames are recorded, earlier runs included.
     Raises InputError for a clip at another rate, or one that was recorded by another plan.
     """
     for planned in plan:

@@ -1,4 +1,4 @@
-"""The rig as a .npz file without pickles, and the hash that tells rigs apart."""
+"""The rig as a .npz file without pickles, and the hash that identifies a rig."""
 
 import hashlib
 from pathlib import Path

@@ -43,7 +43,7 @@ class Shard:
         return not self._rotations and not self.complete
 
     def add_pose(self, clip: str, index: int, *, held_out: bool, rotations: Array, translations: Array) -> None:
-        """Append frame `index` of `clip`, so far its pose alone."""
+        """Append the pose of frame `index` of `clip`."""
         if not self._segments or self._segments[-1].clip != clip:
             self._segments.append(Segment(clip, held_out, index, 0, [], []))
         self._segments[-1].poses += 1
@@ -52,11 +52,11 @@ class Shard:
 
     def add_frame(
         self,
-        index: int,  # of the frame whose pose was added last
+        index: int,  # the frame whose pose was added last
         *,
         mesh: Array,  # [V, 3] float32
         subbands: Dynamic,  # float16
-        whole: Array | None,  # [N, 23] float16 difference from the reference, if it is to be kept
+        whole: Array | None,  # [N, 23] float16 difference from the reference, if it is kept
     ) -> None:
         """Give the last pose its mesh and subbands."""
         if whole is not None:
@@ -71,7 +71,7 @@ class Shard:
         self,
         total: Array,  # [N, 23] float64 running sum
         *,
-        training_frames: int,  # summed in it
+        training_frames: int,  # frames in the sum
     ) -> None:
         """Write the hidden directory, sync it and rename it; raises InputError where the system refuses."""
         with self._writing():
@@ -86,18 +86,18 @@ class Shard:
         sync(self._final.parent)
 
     def _save(self, name: str, array: Array) -> None:
-        content = io.BytesIO()  # np.save into a file itself overlooks that its last bytes found no room
+        content = io.BytesIO()  # np.save into a file does not notice where a full disk loses the last bytes
         np.save(content, array, allow_pickle=False)
         path = self._part / f"{name}.npy"
         try:
             path.write_bytes(content.getbuffer())
         except OSError as error:
-            error.filename = str(path)  # which a write that fails does not name
+            error.filename = str(path)  # failed writes do not name their file
             raise
 
     @contextmanager
     def _writing(self) -> Iterator[None]:
-        """Writes into the hidden directory; what the system refuses is a sentence, and nothing is left half written."""
+        """Turn failed writes into one sentence, and leave nothing half written in the hidden directory."""
         try:
             self._part.mkdir(exist_ok=True)
             yield

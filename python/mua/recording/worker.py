@@ -19,10 +19,10 @@ from mua.recording.workers import ENDED, FAILED, RECORDED, Job
 
 
 def main() -> None:
-    """Record what is asked for until standard input ends or says that no part is left."""
+    """Record requested parts until standard input ends or says that no part is left."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the parent too, which ends this process
     answers = os.fdopen(os.dup(1), "wb")
-    os.dup2(2, 1)  # what libraries print must not come between the answers
+    os.dup2(2, 1)  # output of libraries must not come between the answers
     torch.set_num_threads(1)
     asked: queue.Queue[Any] = queue.Queue()
     threading.Thread(target=_listen, args=(os.fdopen(os.dup(0), "rb"), asked), daemon=True).start()
@@ -32,7 +32,7 @@ def main() -> None:
         _tell(answers, FAILED, str(error))
     except MemoryError:
         _tell(answers, FAILED, "a process that records has too little memory; --jobs 1 needs the least")
-    os._exit(0)  # past the thread that still listens
+    os._exit(0)  # without waiting for the thread that still listens
 
 
 def _record(asked: "queue.Queue[Any]", answers: IO[bytes]) -> None:
@@ -53,7 +53,7 @@ def _record(asked: "queue.Queue[Any]", answers: IO[bytes]) -> None:
 
 
 def _listen(requests: IO[bytes], asked: "queue.Queue[Any]") -> None:
-    """Take up requests; with the parent gone nobody may go on writing what its next run writes."""
+    """Queue requests; end when the parent has ended, because its next run writes the same files."""
     try:
         while True:
             asked.put(pickle.load(requests))

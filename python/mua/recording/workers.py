@@ -26,16 +26,16 @@ from mua.recording.record import PlannedClip
 from mua.teacher import Teacher
 
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
-ENDED, FAILED, RECORDED = "ended", "failed", "recorded"  # what a worker tells
+ENDED, FAILED, RECORDED = "ended", "failed", "recorded"  # kinds of messages from a worker
 
 
 @dataclass(frozen=True)
 class Job:
-    """All that a worker is told at its start."""
+    """A worker's first message."""
 
     teacher: Callable[[], Teacher]  # makes one; pickles
     plan: Sequence[PlannedClip]
-    directory: Path  # of the joined recording
+    directory: Path  # directory of the joined recording
     rate: float
 
 
@@ -43,24 +43,24 @@ class Job:
 class _Worker:
     process: "subprocess.Popen[bytes]"
     listener: threading.Thread | None = None
-    part: int | None = None  # at work on
-    idle: bool = False  # told that no part is left
+    part: int | None = None  # the part that it is recording
+    idle: bool = False  # whether it knows that no part is left
 
     def end(self) -> None:
-        """End it at once."""
+        """Kill the process."""
         self.process.kill()
         self.process.wait()
         if self.listener is not None:
-            self.listener.join()  # what it reads has ended
+            self.listener.join()  # it ends with the pipe that it reads
         for pipe in (self.process.stdin, self.process.stdout):
-            with suppress(OSError):  # of what it was told and never read
+            with suppress(OSError):  # for messages that it never read
                 if pipe is not None:
                     pipe.close()
 
 
 @dataclass
 class _Crew:
-    """The workers, what they tell and how far each part is."""
+    """The workers, their messages and the progress of each part."""
 
     job: Job
     heard: "queue.Queue[tuple[_Worker, Any]]" = field(default_factory=queue.Queue)
@@ -82,7 +82,7 @@ class _Crew:
 
     def tell(self, worker: _Worker, message: object) -> None:
         assert worker.process.stdin is not None
-        with suppress(OSError):  # it has ended, which is heard of where it is listened to
+        with suppress(OSError):  # it has ended; the listening thread reports that
             pickle.dump(message, worker.process.stdin)
             worker.process.stdin.flush()
 
@@ -114,9 +114,9 @@ def record_by_workers(
 ) -> None:
     """Record a plan by processes side by side, going on where an earlier run stopped, and join its parts.
 
-    What an earlier run has left and is damaged since is removed, which `note` hears of, and recorded anew. `progress`
-    hears how many of all wanted frames are recorded, and by how many processes. Raises InputError as `TeacherWriter`,
-    `record` and `join_parts` do, and where a worker ends before its work does.
+    Damaged parts of an earlier run are removed and recorded again; `note` is called with a sentence about each.
+    `progress` is called with how many of all wanted frames are recorded, and by how many processes. Raises InputError
+    as `TeacherWriter`, `record` and `join_parts` do, and where a worker ends before its work does.
     """
     directory = as_path(directory, "directory")
     parts = divide(plan)
@@ -140,7 +140,7 @@ def record_by_workers(
 def _remove_damaged(
     directory: Path, plan: Sequence[PlannedClip], *, rate: float, whole: bool, note: Callable[[str], None]
 ) -> None:
-    """Remove a recording that is not as it was written."""
+    """Remove a recording that differs from what was written."""
     if not any((directory / name).exists() for name in (HEADER, SHARDS)):
         return
     try:
@@ -161,12 +161,12 @@ def _work_off(crew: _Crew, left: list[int], progress: Callable[[int, int], None]
     progress(sum(crew.done.values()), len(crew.workers))
     waiting, running = list(left), len(left)
     while running:
-        worker, told = crew.heard.get()
-        if told is None and worker.idle:
+        worker, message = crew.heard.get()
+        if message is None and worker.idle:
             continue
-        if told is None:
+        if message is None:
             raise InputError(_lost(worker))
-        kind, value = told
+        kind, value = message
         if kind == FAILED:
             raise InputError(value)
         if kind == RECORDED and worker.part is not None:

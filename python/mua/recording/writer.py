@@ -52,12 +52,12 @@ from mua.wavelets import filters
 
 POSES_PER_SHARD = 4096  # a shard ends here at the latest, however few of its frames are recorded
 ROTATIONS = ", unit quaternions wxyz; from_axis_angle and from_matrix of mua.rotation make them"
-UNIT_LENGTH_ERROR = 1e-3  # of a joint's quaternion: rounding of the source, not another convention
+UNIT_LENGTH_ERROR = 1e-3  # tolerance of a joint quaternion's length: rounding of the source, not another convention
 
 
 @dataclass
 class _ClipState:
-    """How far a clip is."""
+    """The progress of one clip."""
 
     held_out: bool
     frames: int = 0
@@ -71,7 +71,7 @@ class _Encoded:
 
     mesh: Array  # [V, 3] float32
     difference: Array  # [N, 23] float32 from the reference texture
-    subbands: Dynamic  # float16, of the difference
+    subbands: Dynamic  # float16 subbands of the difference
 
 
 class TeacherWriter:
@@ -84,13 +84,13 @@ class TeacherWriter:
         *,
         rate: float,  # frames per second of every clip
         wavelet: str = WAVELET,
-        whole_every: int = 50,  # every how many recorded frames of a clip one is kept whole
-        shard_frames: int = 32,  # recorded frames of a shard: at most so many are lost by a kill
+        whole_every: int = 50,  # one of this many recorded frames of a clip is kept whole
+        shard_frames: int = 32,  # recorded frames of a shard, the most that a kill loses
     ) -> None:
         """Open `directory` to go on with its recording, or to begin one.
 
         Raises InputError where it holds a recording of another rig, rate or wavelet, where it is damaged, where another
-        writer is at work in it, where the texture size cannot be halved four times, or where the rig cannot be meant.
+        writer is at work in it, where the texture size cannot be halved four times, or where the rig is a mistake.
         """
         self.directory = directory = as_path(directory, "directory")
         if not isinstance(rig, Rig):
@@ -106,7 +106,7 @@ class TeacherWriter:
         if not isinstance(rate, int | float | np.number) or not LEAST_RATE <= rate <= LARGEST_RATE:
             expected = f"{LEAST_RATE:g} to {LARGEST_RATE:g} frames per second"
             raise InputError(f"recording {directory}: rate is {rate}, expected {expected}")
-        self._told: set[str] = set()  # what was warned of
+        self._warned: set[str] = set()  # mistakes already warned of
         try:
             self._judge(rig_findings(rig), "rig")
         except InputError as error:
@@ -129,7 +129,7 @@ class TeacherWriter:
 
     @property
     def has_reference(self) -> bool:
-        """Whether there is a texture that all others are stored as differences from."""
+        """Whether the recording has its reference texture."""
         return self._reference is not None
 
     def refer_to(self, texture: Array) -> None:
@@ -144,13 +144,13 @@ class TeacherWriter:
             raise InputError(f"{self.directory / REFERENCE}: is another texture than the one to refer to")
 
     def start_clip(self, name: str, *, held_out: bool = False) -> None:
-        """Say which clip the next frames belong to; the clip before it is complete with that.
+        """Start the clip of the next frames, which completes the one before it.
 
         A clip that an earlier run left half recorded goes on at `next_frame(name)`. `held_out` frames are kept for
         evaluation and stay out of the mean. Raises InputError for a complete clip or another `held_out` than before.
         """
         if not isinstance(name, str) or not name:
-            raise InputError(f"recording {self.directory}: the clip's name is {describe(name)}; expected a text")
+            raise InputError(f"recording {self.directory}: the clip's name is {describe(name)}; expected a string")
         if name == self._clip:
             return
         state = self._clips.get(name, _ClipState(held_out))
@@ -159,7 +159,7 @@ class TeacherWriter:
         if state.held_out != held_out:
             raise InputError(f"recording {self.directory}: clip {name!r} began with held_out={state.held_out}")
         for other, before in self._clips.items():
-            if other != name and not before.complete:  # the current clip, or one that a killed run left
+            if other != name and not before.complete:  # the current clip, or one left by a killed run
                 self._complete(other)
         self._clips[name], self._clip = state, name
 
@@ -169,8 +169,8 @@ class TeacherWriter:
         mesh: Array | None = None,  # [V, 3] canonical template vertices, metres
         texture: Array | None = None,  # [N, 23] at the valid texels, or [H, W, 23]; raw channels (mua.channels)
         *,
-        frame: int | None = None,  # which frame of the clip this is, from 0; then frames out of order are refused
-        whole: bool | None = None,  # keep the texture itself too, for evaluation; None: every `whole_every`-th time
+        frame: int | None = None,  # index in the clip, from 0; where given, frames out of order are refused
+        whole: bool | None = None,  # also keep the texture itself, for evaluation; None: every `whole_every`-th time
     ) -> None:
         """Append the clip's next frame; without mesh and texture its pose alone, as history of later frames.
 
@@ -224,7 +224,7 @@ class TeacherWriter:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Finish, and leave the recording to others; after an error nothing more is stored, as after a kill."""
+        """Finish and release the recording; after an error nothing more is stored, as after a kill."""
         try:
             if kind is None:
                 self.finish()
@@ -232,7 +232,7 @@ class TeacherWriter:
             self._lock.release()
 
     def _take_up(self, rig: Rig) -> None:
-        """Begin the recording, or read how far it is."""
+        """Begin the recording, or read how far it got."""
         _begin(self.directory, self._header, rig)
         _remove_leftovers(self.directory)
         if (self.directory / REFERENCE).exists():
@@ -240,7 +240,7 @@ class TeacherWriter:
         self._read_shards()
 
     def _read_shards(self) -> None:
-        """Take up the state that the finished shards say."""
+        """Restore the state from the finished shards."""
         indices = read_indices(self.directory)
         for index in indices:
             for segment in index.segments:
@@ -262,17 +262,17 @@ class TeacherWriter:
         self._shard.complete.append(clip)
 
     def _judge(self, findings: Iterable[Finding], where: str) -> None:
-        """Refuse what is certainly a mistake; warn once of each that may be one."""
+        """Refuse certain mistakes; warn once of each possible one."""
         for finding in findings:
             if finding.certain:
                 raise InputError(finding.sentence)
             cause = finding.sentence.rpartition(": ")[2]
-            if cause not in self._told:
-                self._told.add(cause)
+            if cause not in self._warned:
+                self._warned.add(cause)
                 warnings.warn(f"recording {self.directory}: {where}: {finding.sentence}", LikelyMistake, stacklevel=4)
 
     def _encode(self, pose: Pose, mesh: Array | None, texture: Array | None, where: str) -> _Encoded | None:
-        """Check and transform what was added, relative to the reference frame, which the first texture becomes."""
+        """Check a frame and transform it relative to the reference, which the first texture becomes."""
         if mesh is None and texture is None:
             return None
         if mesh is None or texture is None:
@@ -319,12 +319,12 @@ class TeacherWriter:
     def _begin_shard(self, number: int) -> None:
         self._number = number
         self._shard = Shard(self.directory / SHARDS, number, self._header)
-        if number > 1:  # only the last shard's running sum is of use; a kill may have left the one before it
+        if number > 1:  # only the last shard's running sum is used; a kill may have left the one before it
             (self.directory / SHARDS / shard_name(number - 2) / SUM).unlink(missing_ok=True)
 
 
 def _begin(directory: Path, header: Header, rig: Rig) -> None:
-    """Write header and rig of a new recording, or compare those of an old one."""
+    """Write header and rig of a new recording, or compare them with those of an existing one."""
     if not (directory / HEADER).exists():
         (directory / SHARDS).mkdir(parents=True, exist_ok=True)
         write_rig(directory / RIG, rig)

@@ -1,4 +1,4 @@
-"""Which part of the body each triangle belongs to, by the joints that move it."""
+"""The body part of each triangle, by the joints that move it."""
 
 from collections.abc import Mapping
 from typing import Literal, TypeAlias, get_args
@@ -31,9 +31,9 @@ def body_parts(
     skin_indices: Array,  # [V, 8]
     skin_weights: Array,  # [V, 8]
     *,
-    said: Mapping[str, str] | None = None,  # joint to role, where the file itself says it
+    said: Mapping[str, str] | None = None,  # joint to role, where the file states it
 ) -> Array:
-    """The part of each triangle [F], as an index of BODY_PARTS: that of the joints which move it most.
+    """The part of each triangle [F], as an index of BODY_PARTS: the part of the joints that move it most.
 
     A joint without a part of its own belongs to its parent's, so that fingers are hands and eyes are the head.
     """
@@ -44,7 +44,7 @@ def body_parts(
 
 
 def _parts_of_joints(skeleton: Skeleton, said: Mapping[str, str] | None) -> Array:
-    """The part of each joint [J]; all that no name tells apart is the body."""
+    """The part of each joint [J]; joints with unknown names are the body."""
     named = {
         joint: _OF_ROLE.get(role.split()[-1]) for role, joints in roles(skeleton, said).items() for joint in joints
     }

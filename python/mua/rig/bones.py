@@ -1,4 +1,4 @@
-"""Capsules around a character's bones: the body that loose cloth must not enter and that shades what is near."""
+"""Capsules around a character's bones: the body that cloth must not enter and that shades its surroundings."""
 
 from dataclasses import dataclass
 
@@ -8,15 +8,15 @@ from mua import rotation
 from mua.arrays import Array
 from mua.rig.character import Character
 
-PERSON = 1.75  # metres; lengths of the simulation are meant for a figure of this size and scale with it
-THINNEST = 0.02  # radius in metres of a person's bones that count: arms and legs, not fingers
+PERSON = 1.75  # metres; lengths of the simulation are for a figure of this size and scale with it
+THINNEST = 0.02  # least radius in metres of a person's bones that are used: arms and legs, not fingers
 SHORTEST = 0.03  # metres
-BODY = 0.6  # vertices of larger looseness are clothes and do not tell where the body is
+BODY = 0.6  # vertices of larger looseness are clothes and say nothing about the body
 
 
 @dataclass(frozen=True, eq=False)
 class Bones:
-    """Capsules in the bind pose, each carried along by one joint."""
+    """Capsules in the bind pose, each moved by one joint."""
 
     joints: Array  # [C] int
     ends: Array  # [C, 2, 3] metres
@@ -65,7 +65,7 @@ def capsule_distance(
 
 
 def _far_end(skin: Array, joint: Array, children: Array) -> Array:
-    """Where a bone ends: at the child farthest along the skin, or for the last of a chain where the skin does."""
+    """The end of a bone: at the child farthest along the skin, or where the skin ends for the last of a chain."""
     reach = skin.mean(axis=0) - joint
     if len(children):
         return np.asarray(children[np.argmax((children - joint) @ reach)])

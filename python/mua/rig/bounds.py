@@ -11,7 +11,7 @@ from mua.pose.clip import Clip
 from mua.rig.rig import Rig
 from mua.rig.stretched import stretched
 
-MARGIN = 0.06  # of the figure's size, that cloth may leave the skinned template
+MARGIN = 0.06  # share of the figure's size by which cloth may leave the skinned template
 
 
 def playback_bounds(rig: Rig, clips: Iterable[Clip]) -> Array:

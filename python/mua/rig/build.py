@@ -10,7 +10,7 @@ from mua.rig.texel_binding import bind_texels
 def build_rig(character: Character, *, texels: int, template_vertices: int = 5000) -> tuple[Rig, Array]:
     """Make the template of a character and the map of `texels` x `texels` texels on it.
 
-    Also returns, for each template vertex, the vertex of the dense mesh that it is: [V] int32.
+    Also returns the dense vertex of each template vertex, [V] int32.
     """
     template = make_template(character, vertices=template_vertices)
     rig = Rig(

@@ -1,4 +1,4 @@
-"""A rigged, textured character as every reader hands it on: one skeleton, one mesh, one atlas."""
+"""A rigged, textured character as all readers return it: one skeleton, one mesh, one atlas."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -34,6 +34,6 @@ class Character:
     base_color: Array  # [S, S, 4] uint8 sRGB atlas; alpha is opacity
     clips: tuple[Clip, ...] = ()
     looseness: Array | None = None  # [V] 0 (skin) .. 1 (hanging cloth); None: the simulation estimates it
-    notes: tuple[str, ...] = field(default=())  # decisions of the reader worth telling the user, a sentence each
-    source: Source | None = None  # what the file held, to compare with; None: there is no file, or nothing to compare
-    roles: Mapping[str, str] = field(default_factory=dict)  # joint to body part, where the file itself says it
+    notes: tuple[str, ...] = field(default=())  # the reader's decisions that a user should know, a sentence each
+    source: Source | None = None  # content of the file, to compare with; None: no file, or nothing to compare
+    roles: Mapping[str, str] = field(default_factory=dict)  # joint to body part, where the file states it

@@ -1,4 +1,4 @@
-"""UV charts: pieces of surface that lie connected in texture space, as an artist or xatlas cut them."""
+"""UV charts: pieces of surface that are connected in texture space, as an artist or xatlas cut them."""
 
 import numpy as np
 from scipy.sparse import coo_matrix

@@ -1,4 +1,4 @@
-"""Which joints move a surface."""
+"""The joints that move a surface."""
 
 import numpy as np
 
@@ -7,7 +7,7 @@ from mua.rig.stretched import Skinned
 
 
 def moving_joints(surface: Skinned) -> Array:
-    """Which joints [J] move the surface themselves or through a descendant."""
+    """Whether each joint [J] moves the surface itself or through a descendant."""
     skeleton = surface.skeleton
     moving = np.zeros(len(skeleton.names), dtype=bool)
     moving[np.unique(surface.skin_indices[surface.skin_weights > 0])] = True

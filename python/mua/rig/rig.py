@@ -1,4 +1,4 @@
-"""What a teacher and its student share: skeleton, skinned template and texture space."""
+"""The rig that a teacher and its student share: skeleton, skinned template and texture space."""
 
 from dataclasses import dataclass
 

@@ -13,7 +13,7 @@ from mua.arrays import Array
 
 
 class Skinning:
-    """The blending of one character's weights."""
+    """Blends transforms by one character's skin weights."""
 
     def __init__(
         self,
@@ -47,7 +47,7 @@ class Skinning:
     ) -> Array:
         """Points [V, 3] in the world: the weighted mean of where each joint alone would carry them.
 
-        File formats define skins so and artists choose weights by what it shows; where joints turn far apart it lies
+        File formats define skins this way, and artists choose weights by it; where joints turn far apart it lies
         inside the arc of the dual quaternions.
         """
         spaces = np.concatenate(
@@ -57,7 +57,7 @@ class Skinning:
         return np.asarray(np.einsum("vij,vj->vi", blended[:, :9].reshape(-1, 3, 3), points) + blended[:, 9:])
 
     def _matrix(self, weights: Array, joints: int) -> sparse.csr_matrix:
-        """[V, joints] of the weights of each vertex, one after the other."""
+        """The weights of each vertex as a sparse matrix [V, joints]."""
         return sparse.csr_matrix((weights, self._joints, self._starts), shape=(len(self._starts) - 1, joints))
 
 

@@ -1,4 +1,4 @@
-"""Scales and shears that a clip animates, which rigid joints do not carry: put on the surface before joints move it."""
+"""Animated scales and shears, which rigid joints do not carry: applied to the surface before joints move it."""
 
 from typing import Protocol
 
@@ -28,7 +28,7 @@ def stretched(
     frame: int,
     points: Array,  # [V, 3] the surface's vertices or near them, canonical
 ) -> Array:
-    """Points [V, 3] stretched about the joints that they hang on, blended by the skinning weights."""
+    """Points [V, 3] stretched about their joints, blended by the skinning weights."""
     skeleton = surface.skeleton
     _, places = skeleton.world(skeleton.bind_rotations, skeleton.bind_translations)
     change = np.zeros((len(places), 3, 3))

@@ -11,8 +11,8 @@ from mua.arrays import Array
 from mua.rig.texel_map import TexelMap
 
 FIRST, SECOND, RISING, TURNED = 1, 2, 4, 8  # bits of a block's code
-LONGEST_RUN = 16  # blocks of one code that a byte counts
-END = -1  # of a strip
+LONGEST_RUN = 16  # most blocks of one code that a byte counts
+END = -1  # end of a strip
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,7 +23,7 @@ class Surface:
     strips: Array  # [S] int32 into the texels; END ends a strip
 
     def triangles(self, texels: TexelMap) -> Array:
-        """[T, 3] int64 into the texels, by whose map it was made: those of the blocks, then those of the strips."""
+        """Triangles [T, 3] int64 into the texels of their map: first the blocks', then the strips'."""
         return np.concatenate([block_triangles(blocks(texels), codes_of(self.runs)), strip_triangles(self.strips)])
 
 
@@ -38,13 +38,13 @@ def blocks(texels: TexelMap) -> Array:
 
 
 def _find(known: Array, wanted: Array) -> Array:
-    """Where each number stands among the ascending known, or -1."""
+    """Index of each number among the ascending known ones, or -1."""
     at = np.searchsorted(known, wanted)
     return np.where(np.append(known, -1)[at] == wanted, at, -1)
 
 
 def count_codes(runs: Array) -> int:
-    """How many blocks the runs tell of."""
+    """How many blocks the runs describe."""
     return int((runs >> 4).sum(dtype=np.int64)) + len(runs)
 
 
@@ -78,7 +78,7 @@ def block_triangles(
 
 
 def strip_triangles(strips: Array) -> Array:
-    """Triangles [T, 3] of strips: each corner after the first two makes one with the edge that the last one left."""
+    """Triangles [T, 3] of strips: each corner after the first two forms one with the last edge."""
     triangles: list[tuple[int, int, int]] = []
     edge: list[int] = []
     for entry in strips.tolist():
@@ -94,7 +94,7 @@ def strip_triangles(strips: Array) -> Array:
 
 
 def strips_of(triangles: Array) -> Array:
-    """Strips [S] of triangles [T, 3], which are begun where there is least beside them."""
+    """Strips [S] of triangles [T, 3], begun at triangles with the fewest neighbours."""
     strips: list[int] = []
     beside: dict[tuple[int, int], int] = {}  # the corner that makes a triangle with a directed edge
     for a, b, c in triangles.tolist():
@@ -113,7 +113,7 @@ def strips_of(triangles: Array) -> Array:
 
 
 def _strip(beside: dict[tuple[int, int], int], start: tuple[int, int, int]) -> list[int]:
-    """The strip that begins with a triangle and goes on until it meets none but its own."""
+    """The strip that begins with a triangle and goes on until no free neighbour is left."""
     p, q, corner = start
     strip, met = [2 * p, 2 * q], {(p, q)}
     while True:

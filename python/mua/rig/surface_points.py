@@ -1,4 +1,4 @@
-"""Points of triangle meshes: spread evenly, or the nearest of a triangle."""
+"""Points on triangle meshes: spread evenly, or nearest to given points."""
 
 import numpy as np
 
@@ -8,7 +8,7 @@ from mua.rig.charts import areas
 
 
 def spread_points(mesh: Mesh, count: int) -> tuple[Array, Array]:
-    """Triangles [S] and barycentrics [S, 3] of points at equal shares of the area, the same at every call."""
+    """Triangles [S] and barycentrics [S, 3] of points at equal shares of the area; deterministic."""
     total = np.cumsum(areas(mesh.vertices[mesh.faces]))
     shares = (np.arange(count) + 0.5) * (total[-1] / max(count, 1)) if len(total) else np.empty(0)
     triangles = np.minimum(np.searchsorted(total, shares), max(len(total) - 1, 0))
@@ -60,7 +60,7 @@ def nearest_barycentrics(
 
 
 def _plane_barycentrics(points: Array, a: Array, b: Array, c: Array) -> Array:
-    """Of the feet of perpendiculars on the triangles' planes; negative outside, and where there is no area."""
+    """Barycentrics of projections onto the triangles' planes; negative outside, and where there is no area."""
     u, v, w = b - a, c - a, points - a
     uu, vv, uv = (np.sum(p * q, axis=-1) for p, q in ((u, u), (v, v), (u, v)))
     wu, wv = np.sum(w * u, axis=-1), np.sum(w * v, axis=-1)

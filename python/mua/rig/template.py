@@ -11,12 +11,12 @@ from mua.rig.character import Character, Mesh
 from mua.rig.charts import areas
 
 DENSE_ENOUGH = 1.2  # a mesh of at most this many times the wanted vertices is its own template
-CLOSE_ENOUGH = 0.02  # of the wanted vertices
-ATTEMPTS = 6  # the number of vertices that a number of triangles leaves is only known afterwards
-UV_WEIGHT = 4.0  # of an error in UV against the distance on the surface that it stands for
-SKIN_WEIGHT = 0.5  # of the character's size: the error of a vertex that moves with a wrong joint
-SKIN_DIRECTIONS = 24  # of the space of skin weights; the library takes 32 attributes
-NO_ERROR_LIMIT = c_float(1e9)  # the number of triangles alone ends the decimation
+CLOSE_ENOUGH = 0.02  # tolerance as a share of the wanted vertices
+ATTEMPTS = 6  # attempts: how many vertices a number of triangles leaves is only known afterwards
+UV_WEIGHT = 4.0  # weight of an error in UV relative to the distance on the surface that it stands for
+SKIN_WEIGHT = 0.5  # share of the character's size: the error of a vertex that moves with a wrong joint
+SKIN_DIRECTIONS = 24  # dimensions of the space of skin weights; the library takes 32 attributes
+NO_ERROR_LIMIT = c_float(1e9)  # only the number of triangles ends the decimation
 
 
 @dataclass(frozen=True, eq=False)

@@ -19,20 +19,20 @@ from mua.rig.surface_points import face_normals, interpolate, nearest_barycentri
 from mua.rig.template import Template
 from mua.rig.texel_map import TexelMap, build_texel_map
 
-BEND = 0.7  # radians, of every joint by itself, for which it is judged how wrong other skin weights place a point
-SLIDE = 0.03  # of the figure's size, of every joint by itself, likewise
-REACH = 0.1  # of the figure's size: distance from a joint in the search for neighbours that move alike
-ANYWHERE = 10.0  # of the figure's size: what moves alike comes before all that is nearer
-OTHER_PIECE = 0.02  # of the figure's size: what another UV piece counts for, as pieces part where surfaces end
-OTHER_SIDE = 0.05  # of the figure's size: what a triangle counts for that faces the other way
-ACCEPTED = 0.004  # of the figure's size: the triangle under a texel that carries it no worse is taken without a search
-FAR = 0.03  # of the figure's size, 5 cm on a person: a texel that is carried worse is left out
-FAR_ALIKE = 0.15  # of the figure's size, likewise where the carrier moves just as the texel does: its offset is long
-ALIKE = 1e-3  # of the figure's size: what moves apart by less moves alike
+BEND = 0.7  # radians by which each joint is turned alone to measure how far other skin weights misplace a point
+SLIDE = 0.03  # share of the figure's size by which each joint is moved alone, likewise
+REACH = 0.1  # share of the figure's size: distance from a joint in the search for neighbours that move alike
+ANYWHERE = 10.0  # share of the figure's size: points that move alike come before all nearer ones
+OTHER_PIECE = 0.02  # share of the figure's size: the cost of another UV piece, as pieces part where surfaces end
+OTHER_SIDE = 0.05  # share of the figure's size: the cost of a triangle that faces the other way
+ACCEPTED = 0.004  # share of the figure's size: below this cost the triangle under a texel is taken without a search
+FAR = 0.03  # share of the figure's size, 5 cm on a person: a texel that is carried worse is left out
+FAR_ALIKE = 0.15  # likewise where the carrier moves just as the texel does: its offset is long
+ALIKE = 1e-3  # share of the figure's size: points that part by less move alike
 CANDIDATES = 12  # points of the template that a texel chooses from
 SAMPLES = 8  # points for each triangle of the template
-SKIN_DIRECTIONS = 8  # of the space of weights, in which neighbours are sought
-AT_ONCE = 1000  # texels that choose together
+SKIN_DIRECTIONS = 8  # dimensions of the space of weights in which neighbours are sought
+AT_ONCE = 1000  # texels that are processed together
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,13 +40,13 @@ class Carried:
     """The texels of a dense surface on its template."""
 
     texels: TexelMap  # triangles and barycentrics are the template's
-    cost: Array  # [N] how far off each texel is carried, of the figure's size: at rest and in a bent pose
-    moved: int  # texels that another triangle carries than the one under them in the texture
+    cost: Array  # [N] error of each texel as a share of the figure's size: at rest and in a bent pose
+    moved: int  # texels carried by another triangle than the one under them in the texture
     alike: Array  # [N] bool: the carrier moves just as the texel does, wherever it is
 
     @property
     def unbound(self) -> Array:
-        """[N] bool, texels that nothing of the template carries well."""
+        """[N] bool, texels that no triangle of the template carries well."""
         return self.cost > np.where(self.alike, FAR_ALIKE, FAR)
 
     @property
@@ -186,14 +186,14 @@ class _Surfaces:
         return carriers, nearest_barycentrics(own[:, None], self._coarse.vertices[self._coarse.faces[carriers]])
 
     def _features(self, mesh: Mesh, weights: Array, triangles: Array, barycentrics: Array, *, reach: float) -> Array:
-        """Places [N, 3 + n] in a space in which what belongs together lies near."""
+        """Places [N, 3 + n] in a space where points that belong together are near."""
         places = interpolate(mesh.vertices, mesh.faces[triangles], barycentrics)
         skin = interpolate(weights @ self._directions, mesh.faces[triangles], barycentrics)
         return np.concatenate([places, reach * BEND * skin], axis=1)
 
 
 def _carried_weights(character: Character) -> Array:
-    """How far a turn of each joint carries each vertex along [V, J]: its weights and those of all that hang on it."""
+    """How far a turn of each joint carries each vertex along [V, J]: its weights and those of all joints below it."""
     weights = np.zeros((len(character.skin_weights), len(character.skeleton.parents)))
     np.add.at(weights, (np.arange(len(weights))[:, None], character.skin_indices), character.skin_weights)
     for joint in reversed(range(len(character.skeleton.parents))):  # parents come first

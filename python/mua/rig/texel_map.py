@@ -1,4 +1,4 @@
-"""Which triangle and which point of it each texel of the texture space shows."""
+"""The triangle, and the point on it, that each texel shows."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -8,7 +8,7 @@ import numpy as np
 from mua.arrays import Array
 from mua.rig.character import Mesh
 
-MEMBER, TURNED, CHIEF = 1, 2, 3  # what a texel is to its block of 2 x 2: counted, its rotation too, gives it its place
+MEMBER, TURNED, CHIEF = 1, 2, 3  # a texel's role in its block of 2 x 2: averaged, its rotation too, gives its place
 CANDIDATES_AT_ONCE = 1 << 20  # texel-in-triangle tests held in memory together, about 100 MB
 
 
@@ -34,7 +34,7 @@ class TexelMap:
         return numbers, four
 
     def gathered(self) -> tuple[Array, Array, Array]:
-        """Of the next level's texels the chief [B], the members [B, 4] and those whose rotation counts; -1 for none."""
+        """The next level's chiefs [B], members [B, 4] and members whose rotation counts; -1 for none."""
         assert self.levels
         four, kinds = self.blocks()[1], self.levels[0][:, None] >> 2 * np.arange(4) & 3
         return four[kinds == CHIEF], np.where(kinds >= MEMBER, four, -1), np.where(kinds >= TURNED, four, -1)
@@ -58,7 +58,7 @@ def build_texel_map(mesh: Mesh, size: int) -> TexelMap:
     """Find the UV triangle under every texel centre of a `size` x `size` texture.
 
     A centre on a shared edge or in an overlap goes to the first face in file order. UV triangles without area
-    cover nothing, mirrored ones cover like any other, and what leaves the unit square is cut off.
+    cover nothing, mirrored ones cover like any other, and parts outside of the unit square are cut off.
     """
     corners = mesh.uv[mesh.uv_faces] * size
     owner, claims = cover(corners, size)
@@ -107,7 +107,7 @@ def cover(
         least, most = np.minimum(np.minimum(one, two), three), np.maximum(np.maximum(one, two), three)
         claims += np.bincount(texels[least > 0], minlength=size * size)
         covered = np.flatnonzero((least >= 0) & (most > 0))
-        covered = covered[owner[texels[covered]] < 0][::-1]  # of equal indices numpy lets the last win: the first face
+        covered = covered[owner[texels[covered]] < 0][::-1]  # numpy keeps the last of equal indices: the first face
         owner[texels[covered]] = faces[covered]
     return owner, claims
 
@@ -155,7 +155,7 @@ def _corner_areas(
 ) -> Array:
     """Twice the area [3, n] that each texel centre spans with the edge opposite each corner; >= 0 inside.
 
-    Of two triangles with an edge in common, one has what the other has with the other sign: rounding opens no gap
+    For two triangles with a common edge the values differ in sign alone: rounding opens no gap
     between neighbours and makes no overlap.
     """
     row, column = np.divmod(texels, size)

@@ -15,7 +15,7 @@ from mua.rig.charts import charts_of, signed_areas
 from mua.rig.surface import FIRST, RISING, SECOND, TURNED, Surface, block_triangles, blocks, runs_of, strips_of
 from mua.rig.texel_map import TexelMap
 
-STRETCH = 2.5  # times its texel's footprint that an edge of the grid may span; a longer one crosses a slit in a chart
+STRETCH = 2.5  # footprints of its texel that an edge of the grid may span; a longer one crosses a slit in a chart
 SEAM_STEP = 0.5  # texels between the samples along a seam, so that no texel beside it is stepped over
 REACH = (
     4.0  # texels from a seam to the nearest of its chart; where there is none so near, the nearest in space is taken
@@ -47,7 +47,7 @@ def _sum3(
 def _codes(
     mesh: Mesh,
     texels: TexelMap,
-    corners: Array,  # [K, 4] of blocks, -1 where there is no texel
+    corners: Array,  # [K, 4] corners of blocks, -1 where there is no texel
     *,
     places: Array,  # [N, 3] rest positions, metres
     charts: Array,  # [F]
@@ -159,7 +159,7 @@ def _fitting(
     grid: Array,  # [T, 3]
     places: Array,  # [N, 3] rest positions, metres
 ) -> Array:
-    """Those of three different corners that share no edge, in the same direction, with the grid or a smaller one.
+    """Triangles of three different corners that share no edge in the same direction with the grid or a smaller one.
 
     What is left out would fold over the surface; without it every open edge lies on a loop.
     """
@@ -184,8 +184,8 @@ def _edges(triangles: Array, count: int) -> Array:
 
 
 def _among(wanted: Array, known: Array) -> Array:
-    """Whether each number is among the known; numpy's own isin takes ten times as long on millions."""
-    known = np.append(np.sort(known, axis=None), -1)  # past the end, where greater numbers look
+    """Whether each number is among the known ones; numpy's isin takes ten times as long on millions."""
+    known = np.append(np.sort(known, axis=None), -1)  # a sentinel past the end for greater numbers
     return np.asarray(known[np.searchsorted(known[:-1], wanted)] == wanted)
 
 

@@ -1,4 +1,4 @@
-"""Writes a site as a folder: all of it or nothing, in place of what was written there before."""
+"""Writes a site as a folder, whole or not at all, in place of an earlier one."""
 
 import os
 import shutil
@@ -8,11 +8,11 @@ from mua.errors import InputError
 from mua.files.write import missing_directory, refused
 from mua.share.site import PAGE, Content, Site
 
-MARK = b'<meta name="generator" content="mua">'  # of a page that may be replaced
+MARK = b'<meta name="generator" content="mua">'  # marks a page that may be replaced
 
 
 def require_replaceable(folder: Path) -> None:
-    """Raises InputError, before any work, where the folder holds what nobody wrote with this command."""
+    """Raise InputError, before any work, where the folder holds files that this command did not write."""
     missing_directory(folder.parent, option="-o")
     if not folder.exists():
         return

@@ -1,4 +1,4 @@
-"""How an avatar begins: which side is its front, and the image that stands for it until a browser has drawn it."""
+"""An avatar's first view: which side is its front, and the image shown until a browser has drawn it."""
 
 from contextlib import closing
 from io import BytesIO
@@ -55,7 +55,7 @@ def poster(
 
 
 def view(avatar: Avatar, clip: Clip) -> Camera:
-    """The camera of the page's first frame, on a screen that the figure's box fills in width as in height.
+    """The camera of the page's first frame, on a screen that the figure's box fills in width and height.
 
     Fitted into a page of any shape, the image shows the figure as large as the page does.
     """
@@ -70,7 +70,7 @@ def view(avatar: Avatar, clip: Clip) -> Camera:
 
 
 def _drawn(file: Path, clip: Clip, camera: Camera) -> Array:
-    from mua.gpu import open_device  # here, because the CPU does without a device
+    from mua.gpu import open_device  # imported here, because the CPU needs no device
     from mua.player.buffers import AvatarBuffers
     from mua.player.offscreen import Offscreen
 

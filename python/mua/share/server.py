@@ -35,7 +35,7 @@ def serving(site: Site) -> Iterator[ThreadingHTTPServer]:
     """A server on a free port of the loopback address; `serve_forever` runs it, and it is closed at the end."""
     handler = type("Handler", (_Handler,), {"site": site})
     server = ThreadingHTTPServer((LOOPBACK, 0), handler)
-    server.daemon_threads = True  # a browser that keeps its connection holds nobody up
+    server.daemon_threads = True  # a browser that keeps its connection delays nobody
     try:
         yield server
     finally:
@@ -43,7 +43,7 @@ def serving(site: Site) -> Iterator[ThreadingHTTPServer]:
 
 
 def address(server: ThreadingHTTPServer) -> str:
-    """Where browsers find it."""
+    """The URL of a server."""
     return f"http://{LOOPBACK}:{server.server_port}/"
 
 
@@ -62,10 +62,10 @@ class _Handler(BaseHTTPRequestHandler):
         self._answer(body=False)
 
     def log_message(self, format: str, *arguments: object) -> None:
-        """Say nothing: the page tells what failed."""
+        """Log nothing: the page reports failures."""
 
     def _answer(self, *, body: bool) -> None:
-        """Send what a path holds, or the part of it that is asked for."""
+        """Send the file at a path, or the requested part of it."""
         path = unquote(urlsplit(self.path).path).removeprefix("/") or PAGE
         content, port = self.site.get(path), self.connection.getsockname()[1]
         # Another site whose name leads to this address must not read what is served here.
@@ -87,16 +87,16 @@ class _Handler(BaseHTTPRequestHandler):
             self._send(content, first, end)
 
     def _asked(self) -> re.Match[str] | None:
-        """The one range that is asked for; several, and other units, may be answered by the whole."""
+        """The requested range; several ranges, and other units, may be answered by the whole file."""
         found = RANGE.fullmatch(self.headers.get("Range", "").strip())
         return found if found and (found[1] or found[2]) else None
 
     def _part(self, size: int) -> tuple[int, int] | None:
-        """First byte and end of what is to be sent; None where there is nothing of a range."""
+        """First byte and end of a range; None where the range is empty."""
         asked = self._asked()
         if asked is None:
             return 0, size
-        if not asked[1]:  # so many last bytes
+        if not asked[1]:  # the last bytes, by their number
             first, end = max(size - int(asked[2]), 0), size
         else:
             first, end = int(asked[1]), min(int(asked[2]) + 1, size) if asked[2] else size

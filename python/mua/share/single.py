@@ -23,11 +23,11 @@ DYNAMIC = re.compile(r'await import\("(\.[^"]+)"\)')
 WORKER = re.compile(r'new URL\("(\.[^"]+)", import\.meta\.url\)')
 BOOT = Path(__file__).with_name("single.js")
 ENTRY = "page.js"
-LINES = re.compile(r"^<(?:meta http-equiv|link|script)\b.*\n", re.MULTILINE)  # of the page's head: what is elsewhere
+LINES = re.compile(r"^<(?:meta http-equiv|link|script)\b.*\n", re.MULTILINE)  # tags that refer to other files
 
 
 def require_small(avatars: Sequence[Path]) -> None:
-    """Raises InputError for more bytes than a page should hold."""
+    """Raise InputError for more bytes than a page should hold."""
     total = sum(avatar.stat().st_size for avatar in avatars)
     if total > LARGEST:
         raise InputError(
@@ -67,20 +67,20 @@ def in_order(sources: Mapping[str, str]) -> list[str]:
 
 
 def _modules(files: Mapping[str, Path]) -> list[tuple[str, str]]:
-    """Path and text of every module in the order in which they can be made, with paths in place of addresses."""
+    """Path and text of every module in order of their imports, with paths in place of addresses."""
     sources = {path: file.read_text(encoding="utf-8") for path, file in files.items() if file.suffix == ".js"}
     return [(path, _rewritten(path, sources[path])) for path in in_order(sources)]
 
 
 def _rewritten(path: str, text: str) -> str:
-    """What begins a module names others by `mua:` and path; what is fetched later is looked up when it is."""
+    """A module whose static imports are `mua:` and a path, and whose dynamic imports are looked up when they run."""
     text = STATIC.sub(lambda found: f'{found[1]}"mua:{_below(path, found[2])}"', text)
     text = DYNAMIC.sub(lambda found: f'await import(muaModules["{_below(path, found[1])}"])', text)
     return WORKER.sub(lambda found: f'muaModules["{_below(path, found[1])}"]', text)
 
 
 def _below(path: str, target: str) -> str:
-    """Where a module's own relative address leads."""
+    """The path that a module's relative address leads to."""
     return posixpath.normpath(posixpath.join(posixpath.dirname(path), target))
 
 

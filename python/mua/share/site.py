@@ -10,12 +10,12 @@ from urllib.parse import quote
 
 PLAYER = Path(__file__).parents[1] / "web"  # plain files, served as they are
 PAGE = "index.html"
-SERVED = (".js", ".css", ".wgsl", ".svg")  # of the player's files; the others are for builders
+SERVED = (".js", ".css", ".wgsl", ".svg")  # ending of the player's files; others are for bundlers
 POSTER = "poster.png"
-SCRIPT = '<script type="module"'  # of the page
-WORKER = "worker.js"  # begins a module graph of its own
+SCRIPT = '<script type="module"'  # how the page's script begins
+WORKER = "worker.js"  # the root of a module graph of its own
 ELEMENT = "<mua-avatar "
-UNSAFE = re.compile(r"[^\w.-]+")  # in a file name, for some web host
+UNSAFE = re.compile(r"[^\w.-]+")  # characters of a file name that some web hosts do not take
 
 Content: TypeAlias = bytes | Path
 Site: TypeAlias = Mapping[str, Content]  # by path below the site's address
@@ -23,11 +23,11 @@ Site: TypeAlias = Mapping[str, Content]  # by path below the site's address
 
 @dataclass(frozen=True)
 class Shown:
-    """What a page shows and how it begins."""
+    """The content of a page and how it begins."""
 
     title: str
     clip: str | None = None  # the first one if None
-    show: str | None = None  # as the element's attribute; splats and shadow if None
+    show: str | None = None  # the element's attribute; splats and shadow if None
     more: Mapping[str, str] = field(default_factory=dict)  # further attributes of the element
 
 
@@ -38,7 +38,7 @@ def player_files() -> dict[str, Path]:
 
 
 def player_site(avatars: Sequence[Path], shown: Shown, *, poster: bytes | None = None) -> dict[str, Content]:
-    """A whole site. An avatar has the path of its file's name, with a number where two have the same."""
+    """The files of a site. An avatar's path is its file's name, with a number where two are equal."""
     names = _names(avatars)
     site: dict[str, Content] = {**player_files(), **dict(zip(names, avatars, strict=True))}
     attributes = {"src": " ".join(map(quote, names))}
@@ -50,7 +50,7 @@ def player_site(avatars: Sequence[Path], shown: Shown, *, poster: bytes | None =
 
 
 def page(shown: Shown, attributes: Mapping[str, str]) -> str:
-    """The player's page with so many attributes of its element, and with a title of its own."""
+    """The player's page with these attributes of its element and this title."""
     given = {"clip": shown.clip, "show": shown.show, **shown.more, **attributes}
     written = "".join(f'{name}="{html.escape(value)}" ' for name, value in given.items() if value is not None)
     text = (PLAYER / PAGE).read_text(encoding="utf-8")
@@ -59,18 +59,18 @@ def page(shown: Shown, attributes: Mapping[str, str]) -> str:
 
 
 def _preloads() -> str:
-    """Lines by which a browser fetches all modules at once, before it has read which of them imports which."""
+    """Lines by which a browser fetches all modules at once, before it has read their imports."""
     modules = [path for path in player_files() if path.endswith(".js") and path != WORKER]
     return "".join(f'<link rel="modulepreload" href="{path}">\n' for path in modules)
 
 
 def title_of(avatars: Sequence[Path]) -> str:
-    """What a page of these is called where nobody says."""
+    """The default title of a page of these avatars."""
     return ", ".join(path.stem for path in avatars)
 
 
 def _names(avatars: Sequence[Path]) -> list[str]:
-    """File names that any web host takes, each once."""
+    """Distinct file names that any web host takes."""
     names: list[str] = []
     for avatar in avatars:
         plain = PurePosixPath(UNSAFE.sub("-", avatar.name).lstrip(".-") or "avatar")

@@ -23,7 +23,7 @@ def factorize_branch(
     settings: Settings,
     stage: str,
     run: Run,
-    sensitivities: Bands | None = None,  # of images to the samples of the branch's channels, of one frame
+    sensitivities: Bands | None = None,  # of images to the samples of the branch's channels, for one frame
     counts: Tensor | None = None,  # [F] how much each frame counts
 ) -> tuple[Tensor, Tensor]:
     """Set means and bases of `branch` channel by channel; returns coefficients [F, M] and the texel variance [C].
@@ -40,7 +40,7 @@ def factorize_branch(
     energy = room(branch.channels)
     for done, channel in enumerate(owned, start=1):
         bands = Bands(*(band.to(run.device) for band in source(slice(channel, channel + 1), torch.arange(frames))))
-        generator = run.alone(f"{stage} {channel}").generator  # whoever solves for it draws the same numbers
+        generator = run.alone(f"{stage} {channel}").generator  # whichever process solves for it draws the same numbers
         worth = None if sensitivities is None else worth_of(sensitivities, channel)
         solved, energy[channel] = factorize_channel(
             branch, channel, bands, sweeps=settings.sweeps, generator=generator, worth=worth, counts=counts
@@ -59,11 +59,11 @@ def factorize_branch(
 def factorize_channel(
     branch: Branch,
     channel: int,
-    bands: Bands,  # of this channel alone
+    bands: Bands,  # subbands of this channel alone
     *,
     sweeps: int,
     generator: torch.Generator,
-    worth: tuple[Tensor, ...] | None = None,  # of `worth_of`; None: errors of all samples count alike
+    worth: tuple[Tensor, ...] | None = None,  # from `worth_of`; None: errors of all samples count alike
     counts: Tensor | None = None,  # [F] how much each frame counts
 ) -> tuple[Alphas, Tensor]:
     """Set means and bases of one channel; returns its coefficients [F, R] and the sum of squares about the mean."""
@@ -90,20 +90,20 @@ def factorize_channel(
 
 
 def worth_of(
-    sensitivities: Bands,  # of images to the samples of C channels, of one frame
+    sensitivities: Bands,  # sensitivities of images to the samples of C channels, for one frame
     channel: int,
 ) -> tuple[Tensor, ...]:
-    """What the samples [n, n] of LL, D3 and D2 of a channel count for; alike where images show none of them."""
+    """Weights of the samples [n, n] of LL, D3 and D2 of a channel; equal where images show none of them."""
     levels = sensitivities.ll[0, channel], sensitivities.d3[0, 0, channel], sensitivities.d2[0, 0, channel]
     return tuple(own / own.mean() if own.any() else torch.ones_like(own) for own in levels)
 
 
 class BestCoefficients:
-    """The coefficients per frame and channel that fit given subbands best, by least squares, for the learnt bases."""
+    """The coefficients per frame and channel that fit given subbands best, by least squares, for the fitted bases."""
 
     @torch.no_grad()
     def __init__(self, branch: Branch) -> None:
-        """Solve once for what depends on the bases alone."""
+        """Factorise the part that depends on the bases alone."""
         self._branch = branch
         outer = (outer_products(detail.h, detail.w) for detail in (branch.d3, branch.d2))
         self._levels = [_LeastSquares(basis) for basis in (branch.ll_basis.flatten(2), *outer)]
@@ -111,7 +111,7 @@ class BestCoefficients:
     @torch.no_grad()
     def __call__(
         self,
-        bands: Bands,  # of the branch's channels
+        bands: Bands,  # subbands of the branch's channels
     ) -> Alphas:
         branch = self._branch
         details = [(bands.d3 - branch.d3.mean).transpose(1, 2), (bands.d2 - branch.d2.mean).transpose(1, 2)]
@@ -120,7 +120,7 @@ class BestCoefficients:
 
 
 class _LeastSquares:
-    """Coefficients [F, C, R] of samples [F, C, ...], in double precision, of least norm where blendshapes are alike."""
+    """Coefficients [F, C, R] of samples [F, C, ...], in double precision, of least norm where blendshapes are equal."""
 
     def __init__(
         self,

@@ -1,4 +1,4 @@
-"""Both branches of a student trained at once: side by side on a processor, each with its share of the threads."""
+"""Fits both branches of a student at once on a CPU, each with its share of the threads."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -11,11 +11,11 @@ from mua.training.torch_threads import thread_share
 
 
 class Stopped(Exception):
-    """Raised in a branch whose training is to end, because that of the other one has failed."""
+    """Raised in a branch whose fit must end because that of the other one failed."""
 
 
 def each_branch(tasks: Sequence[Callable[[Run], None]], run: Run) -> None:
-    """Train the branches: on a processor side by side, each with its share of the threads; else one after the other.
+    """Fit the branches: on a CPU side by side, each with its share of the threads; else one after the other.
 
     They share nothing but the descriptors, so that half the threads for each do more than all for one: the larger
     part of a step is too small to be divided.
@@ -36,5 +36,5 @@ def each_branch(tasks: Sequence[Callable[[Run], None]], run: Run) -> None:
 
 
 def side_by_side(run: Run) -> bool:
-    """Whether branches are trained at once: not on a GPU, whose memory one fills, nor where processes take turns."""
+    """Whether branches are fitted at once: not on a GPU, whose memory one fills, nor where processes take turns."""
     return run.device.type == "cpu" and run.processes.count == 1

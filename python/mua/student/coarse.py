@@ -41,7 +41,7 @@ def mesh_pca(
 
 
 def set_pca(coarse: Coarse, meshes: Tensor, run: Run, weights: Tensor | None = None) -> MeshPca:
-    """Set mean and basis of `coarse` from meshes [F, V, 3], metres, alike in all processes; returns the PCA."""
+    """Set mean and basis of `coarse` from meshes [F, V, 3], metres, equal in all processes; returns the PCA."""
     pca = MeshPca(
         **run.once(
             "coarse components",
@@ -64,7 +64,7 @@ def fit_coarse(
     parts: Parts | None = None,
     weights: Tensor | None = None,  # [F] how much each frame counts
 ) -> None:
-    """Set the PCA of `coarse` and train its F_temp on the coefficients (paper, Animatable Coarse Geometry)."""
+    """Set the PCA of `coarse` and fit its F_temp to the coefficients (paper, Animatable Coarse Geometry)."""
     pca = set_pca(coarse, meshes, run, weights)
     fade = settings.generalisation.fade
     mlp = regress(

@@ -1,4 +1,4 @@
-"""The components of the descriptor in torch: what the MLPs are trained on (reference: `mua.pose.components`)."""
+"""The components of the descriptor in torch, the input of the MLPs (reference: `mua.pose.components`)."""
 
 from dataclasses import dataclass
 
@@ -8,7 +8,7 @@ from torch import Tensor
 
 @dataclass(frozen=True, eq=False)
 class Components:
-    """Principal components of normalised descriptors, softly held within the ranges of training and their margins."""
+    """Principal components of normalised descriptors, softly limited to the ranges of training and their margins."""
 
     directions: Tensor  # [K, D]
     ranges: Tensor  # [2, K]
@@ -18,7 +18,7 @@ class Components:
         return len(self.directions)
 
     def __call__(self, inputs: Tensor) -> Tensor:
-        """Components [F, K] of normalised descriptors [F, D], wherever they are."""
+        """Components [F, K] of normalised descriptors [F, D], without limits."""
         return inputs @ self.directions.T
 
     def back(self) -> Tensor:
@@ -26,7 +26,7 @@ class Components:
         return torch.linalg.pinv(self.directions.T.double()).to(self.directions)
 
     def hold(self, found: Tensor) -> Tensor:
-        """Components [F, K] as the networks read them."""
+        """Components [F, K] limited as the networks read them."""
         nearest = torch.minimum(torch.maximum(found, self.ranges[0]), self.ranges[1])
         beyond = found - nearest
         size = beyond.abs()

@@ -1,4 +1,4 @@
-"""MLPs in the coordinates that gradient descent likes, and their fold into the plain MLP that the file holds.
+"""MLPs in coordinates that suit gradient descent, and their fold into the plain MLP that the file holds.
 
 Adam's steps are as long for every weight, while blendshape coefficients differ a thousandfold in what they are worth.
 So MLPs are trained to coordinates of the texture; the map from these is linear, hence part of the last layer once
@@ -27,13 +27,13 @@ class Conditioned(nn.Module):
             self.expand.bias.zero_()
 
     def forward(self, inputs: Tensor) -> Tensor:
-        """[F, M] of what the MLP reads."""
+        """Outputs [F, M] for inputs of the MLP."""
         outputs: Tensor = self.expand(self.mlp(inputs))
         return outputs
 
     @torch.no_grad()
     def folded(self) -> nn.Sequential:
-        """The same function as a plain MLP."""
+        """An equal function as a plain MLP."""
         first, *_, last = linear_layers(self.mlp)
         plain = build_mlp(first.in_features, first.out_features, self.expand.out_features).to(last.weight.device)
         *hidden, end = linear_layers(plain)

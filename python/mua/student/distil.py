@@ -1,4 +1,4 @@
-"""From a recording to a trained student: descriptors of its training frames, then `mua.student.stages`."""
+"""Distils a recording into a student: descriptors of its training frames, then `mua.student.stages`."""
 
 import math
 import time
@@ -30,8 +30,8 @@ from mua.training.checkpoint import Checkpoints, run_key
 from mua.training.optimise import Progress
 from mua.training.processes import ALONE, Processes
 
-RANGE_WEIGHT = 0.01  # of a frame of the built-in range of motion: bases are first of all for the user's motion
-GPU_SECONDS = 1.0  # between two questions about the GPU
+RANGE_WEIGHT = 0.01  # weight of a frame of the built-in range of motion: bases are primarily for the user's motion
+GPU_SECONDS = 1.0  # seconds between queries of the GPU
 
 
 class StageListener(Protocol):
@@ -48,12 +48,12 @@ def distil(
     settings: Settings,
     *,
     device: torch.device,
-    directory: Path,  # of the checkpoints; a run that was killed goes on from them to the same bytes
+    directory: Path,  # directory of the checkpoints; a killed run goes on from them to the same bytes
     report: StageListener,
-    processes: Processes = ALONE,  # that share the work
+    processes: Processes = ALONE,  # the processes that share the work
     only: StageName | None = None,  # run this stage up to its checkpoints; the student is then unfinished
 ) -> Student:
-    """Train a student on the training frames of `recording`; it comes back on the CPU, without gradients.
+    """Distil the training frames of `recording` into a student, returned on the CPU without gradients.
 
     Raises InputError where the recording has another texture size than `settings`, or no training frame, and where a
     stage alone starts from checkpoints that are not in `directory`.
@@ -77,7 +77,7 @@ def distil(
 
 
 def prepare(recording: Recording, settings: Settings) -> tuple[Student, Samples]:
-    """A student that is not trained yet, its components set, and what it is to be trained on.
+    """An untrained student with its components set, and the samples to distil.
 
     Raises InputError where the recording has another texture size than `settings`, or no training frame.
     """
@@ -131,7 +131,7 @@ def _samples(recording: Recording, descriptors: Array) -> Samples:
 
 
 def _weights(recording: Recording) -> Tensor | None:
-    """How much each training frame counts: those of the built-in range of motion less; None where there is none."""
+    """The weight of each training frame, lower for the built-in range of motion; None where there is none."""
     clips = [clip for clip in recording.clips if not clip.held_out]
     counts = np.concatenate(
         [np.full(len(clip.recorded), RANGE_WEIGHT if is_range(clip.name) else 1.0) for clip in clips]
@@ -140,7 +140,7 @@ def _weights(recording: Recording) -> Tensor | None:
 
 
 class _Reporter:
-    """Tells a listener of the stages and steps of a training, of several side by side too, and how busy the GPU is."""
+    """Reports to a listener the stages and steps of trainings, also side by side, and how busy the GPU is."""
 
     def __init__(self, listener: StageListener, device: torch.device) -> None:
         self._listener, self._device = listener, device
@@ -156,18 +156,18 @@ class _Reporter:
             self._listener.step(progress.step, progress.steps, detail=f"{loss}{progress.rate:.1f} steps/s{self._gpu()}")
 
     def _gpu(self) -> str:
-        """How busy the GPU was when last asked; asking takes longer than a step."""
+        """How busy the GPU was at the last query; a query takes longer than a step."""
         if time.monotonic() - self._asked >= GPU_SECONDS:
             self._use, self._asked = gpu_use(self._device), time.monotonic()
         return self._use
 
 
 def gpu_use(device: torch.device) -> str:
-    """What the driver says of the GPU that trains, to follow other figures; nothing on a CPU."""
+    """The driver's figures of the GPU in use, to append to other figures; empty on a CPU."""
     if device.type != "cuda":
         return ""
     taken = f"{torch.cuda.memory_allocated(device) / 1e9:.1f} GB"
     try:
         return f", GPU {torch.cuda.utilization(device)} %, {taken}"
-    except (ImportError, RuntimeError):  # without nvidia-ml-py, or where the driver does not tell
+    except (ImportError, RuntimeError):  # without nvidia-ml-py, or where the driver does not report it
         return f", GPU {taken}"

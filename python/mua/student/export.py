@@ -13,7 +13,7 @@ from mua.pose.encoding import Components, Normalization
 from mua.student.model import Branch, Coarse, Detail, Student, linear_layers
 from mua.wavelets import filters
 
-LARGEST_ROW = 1024.0  # of a last layer: larger weights are exchanged for larger blendshapes
+LARGEST_ROW = 1024.0  # limit of a last layer's weights: larger ones are exchanged for larger blendshapes
 
 
 def export_wavelet(student: Student) -> model.Wavelet:
@@ -49,7 +49,7 @@ def _branch(branch: Branch, static: Tensor) -> model.Branch:
 
 
 def within_range(branch: model.Branch) -> model.Branch:
-    """The same function with no large number in the last layer.
+    """An equal function with no large number in the last layer.
 
     A blendshape times its coefficient is what counts: powers of two go from rows of the layer to blendshapes.
     """

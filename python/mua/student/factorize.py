@@ -38,7 +38,7 @@ class Factors:
 
 def frame_weights(
     frames: Tensor,  # [F, ...]
-    weights: Tensor | None,  # [F] how much each counts; None: all alike
+    weights: Tensor | None,  # [F] weight of each frame; None: equal
 ) -> Tensor:
     """The weights [F] with a mean of one."""
     if weights is None:
@@ -67,7 +67,7 @@ def blendshapes(
     rank: int,
     *,
     generator: torch.Generator,
-    worth: Tensor | None = None,  # [P], above zero: what an error of each sample is multiplied by; None: all alike
+    worth: Tensor | None = None,  # [P], above zero: weight of each sample's error; None: equal
 ) -> Blendshapes:
     """The best linear blendshapes of a channel; with fewer frames or samples than `rank`, the rest is zero."""
     u, s, v = truncated_svd(x if worth is None else x * worth, rank, generator=generator)
@@ -85,7 +85,7 @@ def separable_blendshapes(
     *,
     sweeps: int,
     generator: torch.Generator,
-    worth: Tensor | None = None,  # [n, n], above zero: what an error of each sample is multiplied by; None: all alike
+    worth: Tensor | None = None,  # [n, n], above zero: weight of each sample's error; None: equal
 ) -> Factors:
     """Separable blendshapes of the three bands of a channel by `sweeps` rounds of alternating least squares.
 

@@ -26,9 +26,9 @@ def subband_loss(predicted: Bands, truth: Bands) -> Tensor:
 def picture_loss(
     predicted: Bands,
     truth: Bands,
-    sensitivities: Bands,  # of one frame, as `mua.student.sensitivity` measures them
+    sensitivities: Bands,  # for one frame, from `mua.student.sensitivity`
 ) -> Tensor:
-    """Mean squared error, each number times what a unit of it changes in images: to first order, that of images."""
+    """Mean squared error weighted by the change of images per unit: to first order, the error of images."""
     errors = [((a - b) * s).square() for a, b, s in zip(predicted, truth, sensitivities, strict=True)]
     return torch.stack([error.sum() for error in errors]).sum() / sum(error.numel() for error in errors)
 
@@ -45,7 +45,7 @@ def relative(
 
 @contextmanager
 def weighted(branch: Branch, weights: Tensor) -> Iterator[None]:
-    """Scale the branch's subbands by `weights` [C] within the block: Adam's steps are then alike for all channels."""
+    """Scale the branch's subbands by `weights` [C] within the block: Adam's steps then suit all channels."""
     _scale(branch, weights)
     yield
     _scale(branch, 1 / weights)
@@ -73,7 +73,7 @@ def finetune(
     basis_rate: float = BASIS_RATE,
     weight_decay: float = Generalisation.weight_decay,
     error: Callable[[Bands, Bands], Tensor] = subband_loss,
-    frames: Tensor | None = None,  # [F] how often each frame is drawn; None: all alike
+    frames: Tensor | None = None,  # [F] how often each frame is drawn; None: equally
 ) -> None:
     """Train bases and MLP together on an error of weighted subbands, by default the paper's loss."""
     schedule = schedule.over(len(inputs))

@@ -1,8 +1,8 @@
-"""Local coefficients: what a body part shows follows the joints near it more than those far off.
+"""Local coefficients: the look of a body part follows the joints near it more than distant ones.
 
 The parts are the joints that the descriptor encodes, each with the samples of subbands and mesh that hang on it most.
 For the samples of a part, the descriptor's entries count the less the more joints lie between. Only the function that
-the coefficient MLPs are taught is made of parts: bases, MLP, file and player stay as they are.
+the coefficient MLPs fit is made of parts: bases, MLP, file and player stay as they are.
 """
 
 from dataclasses import dataclass
@@ -20,12 +20,12 @@ from mua.rig.rig import Rig
 from mua.student.model import Branch
 from mua.student.targets import Targets
 
-POSE_FOR_LIGHT = 0.25  # what joints in their parents count for beside how they are turned in the world
+POSE_FOR_LIGHT = 0.25  # weight of joints' local rotations relative to their rotations in the world
 
 
 @dataclass(frozen=True, eq=False)
 class Parts:
-    """P body parts: which part each sample belongs to, and how many joints lie between it and each descriptor entry."""
+    """P body parts: the part of each sample, and how many joints lie between a part and each descriptor entry."""
 
     steps: Tensor  # [P, D] int64
     world: Tensor  # [D] bool, the entries of how joints are turned in the world
@@ -34,9 +34,9 @@ class Parts:
     vertices: Tensor  # [V] int64
 
     def reach(self, fade: float, *, light: bool = False) -> Tensor:
-        """[P, D] what each entry of a descriptor is multiplied by before a part sees it; 1 for its own joint.
+        """Factors [P, D] of the descriptor's entries as each part sees them; 1 for its own joint.
 
-        What follows the `light` also sees how joints are turned in the world; shape follows them in their parents.
+        Parts that follow the `light` also see how joints are turned in the world; shape follows them in their parents.
         """
         sees = torch.where(self.world, float(light), POSE_FOR_LIGHT if light else 1.0)
         return fade ** self.steps.float() * sees
@@ -52,7 +52,7 @@ class Parts:
 
 @dataclass(frozen=True, eq=False)
 class Locality:
-    """How the targets of a regression are made of parts: its sum over parts is what is taught."""
+    """How the targets of a regression are a sum over body parts."""
 
     steps: Tensor  # [P, D] int64, of the parts
     reach: Tensor  # [P, D]
@@ -111,7 +111,7 @@ def texture_locality(
     fade: float,
     light: bool = False,
 ) -> Locality:
-    """How the joint coordinates of a branch are made of parts.
+    """How the joint coordinates of a branch are a sum over parts.
 
     Coordinates stand for textures by orthonormal directions, so that those of a part's samples are the projection of
     the texture that is left when all other samples are zero.
@@ -133,13 +133,13 @@ def texture_locality(
 
 def sample_locality(
     parts: Parts,
-    basis: Tensor,  # [K, S, A] orthonormal: what each coordinate puts into A values of S samples
+    basis: Tensor,  # [K, S, A] orthonormal: contribution of each coordinate to A values of S samples
     owners: Tensor,  # [S] the part of each sample
     *,
     fade: float,
     light: bool = False,
 ) -> Locality:
-    """How coordinates of a mesh or of a full-size texture are made of parts."""
+    """How coordinates of a mesh or of a full-size texture are a sum over parts."""
     shares = torch.zeros(len(parts.steps), len(basis), len(basis), device=basis.device)
     for value in range(basis.shape[2]):
         _add_shares(shares, basis[..., value], owners.to(basis.device))
@@ -148,7 +148,7 @@ def sample_locality(
 
 def _add_shares(
     shares: Tensor,  # [P, K, K] added to
-    shapes: Tensor,  # [K, S] what each coordinate puts into S samples
+    shapes: Tensor,  # [K, S] contribution of each coordinate to S samples
     owner: Tensor,  # [S]
 ) -> None:
     for part in owner.unique().tolist():

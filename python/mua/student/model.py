@@ -70,7 +70,7 @@ class Branch(nn.Module):
     """Geometry or appearance: F_coeff and the subbands that its coefficients drive."""
 
     ll_mean: Tensor
-    mlp: nn.Module  # plain but while it is trained
+    mlp: nn.Module  # a plain MLP except while it is fitted
 
     def __init__(self, channels: int, ranks: Ranks, size: int, *, inputs: int, hidden: int) -> None:
         super().__init__()
@@ -90,7 +90,7 @@ class Branch(nn.Module):
 
     @torch.no_grad()
     def silence(self, channels: Tensor) -> None:
-        """Take the blendshapes of some channels [C], bool; no gradient reaches them; they stay at their mean."""
+        """Zero the blendshapes of some channels [C], bool: they get no gradient and stay at their mean."""
         self.ll_basis[channels] = 0
         for detail in (self.d3, self.d2):
             detail.h[:, channels] = 0
@@ -174,11 +174,11 @@ class Student(nn.Module):
 
     @property
     def components(self) -> Components:
-        """Of normalised descriptors."""
+        """The components of normalised descriptors."""
         return Components(self.directions, self.ranges, self.margins)
 
     def set_components(self, components: StoredComponents) -> None:
-        """Take over what the training descriptors give."""
+        """Set normalisation and components from those of the training descriptors."""
         normalization = components.normalization
         self.mean.copy_(torch.from_numpy(normalization.mean))
         self.scale.copy_(torch.from_numpy(normalization.scale))
@@ -187,14 +187,14 @@ class Student(nn.Module):
         self.margins.copy_(torch.from_numpy(components.margins))
 
     def read_buffers(self) -> dict[str, Tensor]:
-        """What a descriptor passes before the MLPs."""
+        """The buffers that map a descriptor to the MLPs' input."""
         return {name: getattr(self, name) for name in ("mean", "scale", "directions", "ranges", "margins")}
 
     def normalize(self, descriptors: Tensor) -> Tensor:
         return (descriptors - self.mean) / self.scale
 
     def read(self, descriptors: Tensor) -> Tensor:
-        """What the MLPs read [F, K] of descriptors [F, D]."""
+        """The MLPs' inputs [F, K] for descriptors [F, D]."""
         return self.components.hold(self.components(self.normalize(descriptors)))
 
     def mesh(self, descriptors: Tensor) -> Tensor:
@@ -202,7 +202,7 @@ class Student(nn.Module):
         return self.coarse(self.read(descriptors))
 
     def coefficients(self, descriptors: Tensor) -> tuple[Alphas, Alphas]:
-        """What the MLPs predict, geometry and appearance."""
+        """The coefficients that the MLPs predict, geometry and appearance."""
         inputs = self.read(descriptors)
         return self.geometry.split(self.geometry.mlp(inputs)), self.appearance.split(self.appearance.mlp(inputs))
 
@@ -224,7 +224,7 @@ class Student(nn.Module):
         return (lowpass_texels(bands, self.wavelet, self.texels) + self.static).transpose(1, 2)
 
     def mean_lowpass(self) -> Tensor:
-        """What the mean of the dynamic subbands puts into the valid texels [23, N]."""
+        """The contribution of the dynamic subbands' mean to the valid texels [23, N]."""
         geometry, appearance = self.branches
         ll = torch.cat([geometry.ll_mean, appearance.ll_mean])
         d3 = torch.cat([geometry.d3.mean, appearance.d3.mean], dim=1)

@@ -1,4 +1,4 @@
-"""Removes from a branch what does not visibly vary: whole channels, and single blendshapes of the others.
+"""Removes invisible variation from a branch: whole channels, and single blendshapes of the others.
 
 A blendshape below what is visible is rounding of the recording. Training its coefficient like any other would let the
 MLP's weights grow without bound as its texels shrink.
@@ -10,7 +10,7 @@ from torch import Tensor
 from mua.channels import COARSE_TEXELS, FINE_TEXELS
 from mua.student.model import Branch
 
-LEVEL_GAINS = (COARSE_TEXELS, COARSE_TEXELS, FINE_TEXELS)  # of LL, D3, D2 over texels: a level doubles a constant
+LEVEL_GAINS = (COARSE_TEXELS, COARSE_TEXELS, FINE_TEXELS)  # of LL, D3, D2 over texels: a level doubles constants
 
 
 @torch.no_grad()

@@ -20,7 +20,7 @@ from mua.student.targets import channel_weights, still_channels
 from mua.training.optimise import Run, optimise
 from mua.training.processes import ALONE, Processes, Share
 
-BASIS_START = 0.1  # of a channel's spread
+BASIS_START = 0.1  # share of a channel's spread
 
 
 def fit_coarse_from_noise(
@@ -31,7 +31,7 @@ def fit_coarse_from_noise(
     settings: Settings,
     run: Run,
 ) -> None:
-    """Set the PCA of `coarse` and train F_temp on the L1 error of its coefficients (paper, Eq. L_coarse)."""
+    """Set the PCA of `coarse` and fit F_temp by the L1 error of its coefficients (paper, Eq. L_coarse)."""
     pca = set_pca(coarse, meshes, run)
     start_mlp(coarse.mlp, run.generator)
 
@@ -49,14 +49,14 @@ def fit_coarse_from_noise(
 def fit_branch_from_noise(
     branch: Branch,
     inputs: Tensor,  # [F, K] components of descriptors
-    source: Source,  # of the branch's channels, counted from 0
+    source: Source,  # subbands of the branch's channels, counted from 0
     *,
-    channels: slice,  # which of the 23 these are
+    channels: slice,  # the branch's channels among the 23
     settings: Settings,
     name: str,
     run: Run,
 ) -> None:
-    """Train bases and MLP from noise on the paper's loss; the means are those of the training frames."""
+    """Fit bases and MLP from noise by the paper's loss; the means are those of the training frames."""
     weights = start_from_noise(branch, inputs, source, channels=channels, run=run)
     finetune(
         branch,
@@ -74,9 +74,9 @@ def fit_branch_from_noise(
 def start_from_noise(
     branch: Branch,
     inputs: Tensor,  # [F, K] components of descriptors
-    source: Source,  # of the branch's channels, counted from 0
+    source: Source,  # subbands of the branch's channels, counted from 0
     *,
-    channels: slice,  # which of the 23 these are
+    channels: slice,  # the branch's channels among the 23
     run: Run,
 ) -> Tensor:
     """Set the means of `branch` and draw its bases and MLP; returns the weight [C] of each channel's error."""
@@ -113,7 +113,7 @@ def set_means(branch: Branch, source: Source, *, frames: int, processes: Process
 
 @torch.no_grad()
 def start_mlp(mlp: nn.Module, generator: torch.Generator) -> None:
-    """Draw what torch starts a linear layer with, uniform within 1 / sqrt(inputs), from the run's generator."""
+    """Draw torch's initial weights of linear layers, uniform within 1 / sqrt(inputs), from the run's generator."""
     for layer in linear_layers(mlp):
         reach = 1 / math.sqrt(layer.in_features)
         for parameter in (layer.weight, layer.bias):

@@ -1,6 +1,6 @@
-"""Where the MLPs are taught the smooth function: around the frames, and where a body part is as in another frame.
+"""Training points of the MLPs: around the frames, and where a body part is as in another frame.
 
-An MLP follows a function where it was taught it, and little beyond. Unseen poses lie as far from the nearest frame as
+An MLP follows a function at its training points, and little beyond. Unseen poses lie as far from the nearest frame as
 frames lie from each other, and most of them are seen parts in combinations that are not: an arm of one frame, the legs
 of another. With points there too, the MLP follows the function where unseen motion goes
 (docs/research/unseen_motion.md).
@@ -12,9 +12,9 @@ from torch import Tensor
 from mua.student.components import Components
 from mua.student.settings import Generalisation
 
-FARTHEST = 16.0  # times a point's own distance from the mean
+FARTHEST = 16.0  # factor of a point's own distance from the mean
 BLEND = 0.5  # points lie up to this far on the way to a frame
-RADII = 4  # what is exchanged is a joint with those near it: random, fewer than this many joints away
+RADII = 4  # a random joint is exchanged with those within a random radius of fewer than this many joints
 
 
 def draw_points(
@@ -43,7 +43,7 @@ def outward(
     *,
     generator: torch.Generator,
 ) -> None:
-    """Move so many of the points away from the mean, up to FARTHEST times as far as they are."""
+    """Move this share of the points away from the mean, up to FARTHEST times their distance."""
     chosen = torch.randperm(len(points), generator=generator)[:number].to(points.device)
     times = FARTHEST ** torch.rand(number, 1, generator=generator).to(points)
     points[chosen] *= times
@@ -60,7 +60,7 @@ def exchange(
     part = torch.randint(len(steps), (count,), generator=generator).to(inputs.device)
     radius = torch.randint(RADII, (count, 1), generator=generator).to(inputs.device)
     one, other = (pick(inputs, count, generator=generator) for _ in range(2))
-    few = steps.to(inputs.device, torch.int16)  # joints: [count, D] of them is large
+    few = steps.to(inputs.device, torch.int16)  # a small type, because [count, D] of them is large
     return torch.where(few[part] <= radius, one, other)
 
 
@@ -75,7 +75,7 @@ def scatter(
     along, off = torch.rand(2, len(points), 1, generator=generator).to(z)
     drawn = torch.randn(points.shape, generator=generator).to(z)
     target = pick(z, len(points), generator=generator)
-    drawn.mul_(noise * off * z.std(0, correction=0))  # in place: all of this is large
+    drawn.mul_(noise * off * z.std(0, correction=0))  # in place, because all of this is large
     target.sub_(points).mul_(BLEND * along)
     return target.add_(points).add_(drawn)
 

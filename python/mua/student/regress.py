@@ -22,16 +22,16 @@ from mua.training.schedule import Schedule
 
 # Chosen on held-out walks and turns.
 FIRST_LAYER = 0.3  # scale of the first layer's weights at the start: small ones make smooth functions
-VISITS = 32  # to each point: the function's values there are computed once
+VISITS = 32  # uses of each point; the function's values there are computed once
 POINTS_AT_ONCE = 1 << 9
-FORGONE = 1e-4  # of the spread of what a part sees
+FORGONE = 1e-4  # share of the spread of a part's view of the descriptors
 GENERALISATION = Generalisation()
 
 
 class Beyond(NamedTuple):
-    """What frames beyond the user's motion count for."""
+    """How frames beyond the user's motion enter the function."""
 
-    noise: float  # that their values are granted: light follows the pose, cloth its history too
+    noise: float  # noise variance of their values: light follows the pose, cloth also its history
     fades: bool  # whether the function fades to the mean of these frames; else to that of the user's
 
 
@@ -53,9 +53,9 @@ def regress(
     beyond: Beyond = CLOTH,
     generalisation: Generalisation = GENERALISATION,
 ) -> Conditioned:
-    """An MLP from components to targets, or to targets @ expand, taught the smooth function through them.
+    """An MLP from components to targets, or to targets @ expand, fitted to the smooth function through them.
 
-    It learns the values of that function at points around the frames. With `locality` the function is a sum over body
+    It is fitted to values of that function at points around the frames. With `locality` the function is a sum over body
     parts, each of the joints near it, and the points go where parts are as in different frames.
     """
     schedule = schedule.over(len(inputs))
@@ -68,8 +68,8 @@ def regress(
     mlp = seeded_mlp(z.shape[1], hidden, goal.shape[1], run=run)
     count = max(schedule.steps * schedule.batch // VISITS, 1)
 
-    @cache  # and not at all where a finished stage is taken up
-    def lesson() -> dict[range, tuple[Tensor, Tensor]]:
+    @cache  # computed when first used: not at all where a finished stage is resumed
+    def samples() -> dict[range, tuple[Tensor, Tensor]]:
         generator = run.alone(f"{stage} points").generator
         smooth = fit_local(inputs, goal, components, locality, generator=generator, own=own, beyond=beyond)
         points = draw_points(
@@ -85,7 +85,7 @@ def regress(
 
     def loss(model: nn.Module) -> Tensor:
         def part(share: Share) -> Tensor:
-            points, values = lesson()[share.held]
+            points, values = samples()[share.held]
             places = ((share.rows - share.held.start) // share.held.step).to(points.device)
             return squared_error(model(points[places]), values[places])
 
@@ -100,7 +100,7 @@ def regress(
 
 
 def _values(smooth: Callable[[Tensor], Tensor], points: Tensor, *, width: int) -> Tensor:
-    """What a function gives at points [n, D], some at a time, [n, width]."""
+    """A function's values [n, width] at points [n, D], computed in chunks."""
     values = points.new_empty(len(points), width)
     for own, some in zip(values.split(POINTS_AT_ONCE), points.split(POINTS_AT_ONCE), strict=True):
         own.copy_(smooth(some))
@@ -117,7 +117,7 @@ def fit_local(
     own: Tensor | None = None,  # [F] bool
     beyond: Beyond = CLOTH,
 ) -> Smooth:
-    """The smooth function of components through `goal`; with `locality` a sum over parts, as each sees the pose."""
+    """The smooth function of components through `goal`; with `locality` a sum over parts with views of their own."""
     z, back = components(inputs), components.back()
 
     def fit(x: Tensor) -> Smooth:
@@ -139,7 +139,7 @@ def fit_local(
 def whitening(
     inputs: Tensor,  # [F, D]
 ) -> Tensor:
-    """The turn [D, D] to directions that vary alike, but for a floor that does not raise noise to their level."""
+    """The map [D, D] to directions of equal variance, with a floor that does not raise noise to their level."""
     variance, directions = torch.linalg.eigh(torch.cov(inputs.double().T, correction=0).reshape(inputs.shape[1], -1))
     return (directions / (variance.clamp(min=0) + INPUT_FLOOR).sqrt()).to(inputs)
 
@@ -147,7 +147,7 @@ def whitening(
 def leading(
     z: Tensor,  # [F, D]
 ) -> Tensor:
-    """Which columns [D], bool, hold nearly all of what tells frames apart: distances then cost several times less."""
+    """Columns [D], bool, that hold nearly all variance between frames, which makes distances several times cheaper."""
     spread, order = z.var(0, correction=0).sort()
     held = torch.empty_like(order, dtype=torch.bool)
     held[order] = spread.cumsum(0) > FORGONE * spread.sum()
@@ -172,5 +172,5 @@ def seeded_mlp(inputs: int, hidden: int, outputs: int, *, run: Run) -> nn.Sequen
 
 
 def squared_error(predicted: Tensor, goal: Tensor) -> Tensor:
-    """Summed over coordinates: one less the explained variance where the goal has unit energy."""
+    """Squared error summed over coordinates: 1 minus the explained variance where the goal has unit energy."""
     return (predicted - goal).square().sum(1).mean()

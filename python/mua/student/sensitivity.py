@@ -1,4 +1,4 @@
-"""How much each sample of the subbands changes images: what its errors count for in fine-tuning.
+"""How much each sample of the subbands changes images, the weight of its errors in fine-tuning.
 
 An image of random signs, carried back through drawing and posing, holds on average the squared length of each sample's
 derivative: one backward pass measures all samples (Bekas et al. 2007, https://doi.org/10.1016/j.apnum.2007.01.003).
@@ -22,17 +22,17 @@ from mua.training.optimise import Progress, Run
 from mua.wavelets import Bands
 
 STAGE = "picture sensitivities"
-SIDE = 256  # pixels of an image
+SIDE = 256  # pixels along a side of an image
 HIGHEST = 0.4  # radians, from which cameras look down, or up
 GOLDEN = np.pi * (3 - np.sqrt(5))  # radians from one camera to the next
-LEAST = 1e-3  # of an attribute's mean square: what these images do not show may be seen in others
+LEAST = 1e-3  # share of an attribute's mean square: other images may show samples that these do not
 
 
 def measure_sensitivities(recording: Recording, pictures: int, run: Run) -> Bands:
     """By how much, root mean square over pixels, a unit of each sample changes images of training frames.
 
-    Of one frame; the three bands of a detail level share their numbers, [1, 1, 23, n, n]. Frames are evenly spaced,
-    the cameras around them.
+    Values are for one frame; the three bands of a detail level share theirs, [1, 1, 23, n, n]. Frames are evenly
+    spaced, the cameras around them.
     """
     rows = torch.linspace(0, recording.count() - 1, pictures).long()
     mean = torch.from_numpy(recording.mean_texture()).float().to(run.device)
@@ -57,12 +57,12 @@ def measure_sensitivities(recording: Recording, pictures: int, run: Run) -> Band
 def _squares(
     recording: Recording,
     rig: TorchRig,
-    row: int,  # of the training frames
+    row: int,  # index among the training frames
     place: tuple[RecordedClip, int],  # its clip and frame
     direction: tuple[float, float],  # azimuth and elevation of the camera, radians
     *,
     mean: Tensor,  # [N, 23] texture
-    middle: Bands,  # [23, n, n], ... those that the mean texture stands for
+    middle: Bands,  # [23, n, n], ... subbands of the mean texture
     generator: torch.Generator,
 ) -> Bands:
     """The squared derivatives of one image, [23, n, n], [3, 23, n, n] and [3, 23, 2n, 2n]."""
@@ -90,7 +90,7 @@ def _squares(
 def shared_pattern(
     squares: Tensor,  # [23, h, w] by channel and sample
 ) -> Tensor:
-    """The same with one pattern over samples for all channels of an attribute, which are seen where it is."""
+    """Sensitivities with one pattern over samples for all channels of an attribute, which are visible together."""
     shared = torch.empty_like(squares)
     for own in ATTRIBUTES.values():
         pattern = squares[own].mean(0)

@@ -27,14 +27,14 @@ class Ranks:
 class Generalisation:
     """Options that improve unseen motion, measured in docs/research/unseen_motion.md."""
 
-    fade: float = 0.6  # what a joint counts for in a body part's texels, for each joint that lies between; 1: all alike
-    noise: float = 0.3  # of the points that the regression teaches at around frames, in spreads of each direction
+    fade: float = 0.6  # factor of a joint's weight in a body part's texels per joint between them; 1: all equal
+    noise: float = 0.3  # noise of the regression's points around frames, in spreads of each direction
     exchanged: float = 0.5  # share of those points where a body part is as in another frame
-    exchanged_noise: float = 1.0  # of these
+    exchanged_noise: float = 1.0  # noise of these
     outside: float = 0.2  # share of all points that lie outside of training, where the function fades to the mean
-    weight_decay: float = 1e-3  # of the MLPs
+    weight_decay: float = 1e-3  # weight decay of the MLPs
     remove_heading: bool = True  # whether descriptors are turned back by the heading
-    own: bool = True  # whether frames show motion that will be played; else all say as little as the range of motion
+    own: bool = True  # whether frames show motion that will be played; else all weigh as little as the range of motion
 
 
 @dataclass(frozen=True)
@@ -42,15 +42,15 @@ class Settings:
     """Sizes and schedules of one distillation."""
 
     texels: int  # H = W of the Gaussian texture
-    frames: int  # training frames to record
+    frames: int  # number of training frames to record
     geometry: Ranks
     appearance: Ranks
     components: int  # PCA components of the coarse mesh
     hidden: int  # width of the two hidden layers of every MLP
-    sweeps: int  # of alternating least squares
+    sweeps: int  # rounds of alternating least squares
     regression: Schedule
     finetune: Schedule
-    pictures: int = 0  # in which fine-tuning's weights are measured; without any, it descends the paper's loss
+    pictures: int = 0  # images by which fine-tuning's weights are measured; 0: it minimises the paper's loss
     generalisation: Generalisation = Generalisation()
     seed: int = 0
     start: Literal["closed form", "random"] = "closed form"
@@ -107,7 +107,7 @@ RECIPES = ("closed-form", "paper")
 
 
 def with_recipe(settings: Settings, name: str) -> Settings:
-    """The same student trained another way; "paper" is the paper's own: a random start, then Adam for a million steps.
+    """The settings with another recipe; "paper" is the paper's own: a random start, then Adam for a million steps.
 
     Raises InputError for a recipe that is not in RECIPES. Source: paper, Implementation Details.
     """

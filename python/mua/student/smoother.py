@@ -1,8 +1,8 @@
-"""Kernel ridge regression: the smooth function of the descriptor that the coefficient MLPs are taught.
+"""Kernel ridge regression: the smooth function of the descriptor that the coefficient MLPs are fitted to.
 
 An MLP trained on the frames alone fits them and little between them. A wide Gaussian kernel, solved in closed form,
-carries over to unseen motion far better; the MLP learns its values at points around the frames, as many as it takes.
-Nystrom's approximation over some of the frames bounds the cost (Williams and Seeger 2001,
+carries over to unseen motion far better; the MLP is fitted to its values at points around the frames, as many as it
+needs. Nystrom's approximation over some of the frames bounds the cost (Williams and Seeger 2001,
 https://papers.nips.cc/paper/1866-using-the-nystrom-method-to-speed-up-kernel-machines).
 """
 
@@ -14,11 +14,11 @@ from typing import Protocol
 import torch
 from torch import Tensor
 
-CENTRES = 2048  # frames that the function is spanned by
+CENTRES = 2048  # frames that span the function
 WIDTH = 3.0  # squared width of the kernel relative to the mean squared distance between frames
-RIDGE = 3e-3  # noise variance that a frame's value is granted, relative to the function's own
-LEAST = 0.2  # of it for a frame that is hardly off the mean: the farther off, the less it says of other motion
-RANK_FLOOR = 1e-12  # of the kernel matrix's largest eigenvalue: what lies below is rounding
+RIDGE = 3e-3  # noise variance of a frame's value, relative to the function's own
+LEAST = 0.2  # share of it for a frame near the mean; distant frames say less about other motion
+RANK_FLOOR = 1e-12  # share of the kernel matrix's largest eigenvalue; smaller ones are rounding
 
 
 class Smooth(Protocol):
@@ -28,7 +28,7 @@ class Smooth(Protocol):
         """The values [F, K]."""
 
     def through(self, matrix: Tensor) -> "Smooth":
-        """The function whose values are multiplied by a matrix [K, K']."""
+        """The function with its values multiplied by a matrix [K, K']."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +51,7 @@ class Smoother:
 
 @dataclass(frozen=True, eq=False)
 class Constant:
-    """The same values at every point."""
+    """Constant values at every point."""
 
     values: Tensor  # [K]
 
@@ -64,7 +64,7 @@ class Constant:
 
 @dataclass(frozen=True, eq=False)
 class Sum:
-    """The sum of functions, of which each may see the points turned."""
+    """The sum of functions, each of which may see the points transformed."""
 
     terms: tuple[Smooth, ...]
     turns: tuple[Tensor, ...] | None = None  # [D, D'] each
@@ -83,10 +83,10 @@ def fit_smoother(
     targets: Tensor,  # [F, K]
     *,
     generator: torch.Generator,
-    noise: Tensor | None = None,  # [F] variance that each frame's value is granted; None: RIDGE
-    width: float | None = None,  # of the kernel, squared; None: by the frames
+    noise: Tensor | None = None,  # [F] noise variance of each frame's value; None: RIDGE
+    width: float | None = None,  # squared width of the kernel; None: from the frames
 ) -> Smoother:
-    """The smooth function that comes near `targets` at `x`."""
+    """The smooth function that approximates `targets` at `x`."""
     noise = torch.full_like(x[:, 0], RIDGE) if noise is None else noise
     chosen = torch.randperm(len(x), generator=generator)[:CENTRES].sort().values.to(x.device)
     centres = x[chosen]
@@ -111,14 +111,14 @@ def fit_beyond(
     targets: Tensor,  # [F, K]
     own: Tensor,  # [F] bool, the frames of the user's motion
     *,
-    beyond: float,  # variance of the noise that other frames' values are granted
+    beyond: float,  # noise variance of other frames' values
     generator: torch.Generator,
-    fades: bool = True,  # to the mean of the frames that are not the user's
+    fades: bool = True,  # whether it fades to the mean of the frames that are not the user's
 ) -> Sum:
-    """What all frames have in common, heavily smoothed, plus what the user's show besides, which ends with them.
+    """A heavily smoothed function of all frames, plus the residual of the user's frames, which fades away from them.
 
     Far from all frames it is 0, the mean of the user's, or where `fades` is given the mean of the others: the mean of a
-    walk is less like other motion. Where no frame is the user's, it is what they have in common.
+    walk is less like other motion. Where no frame is the user's, it is the smoothed function alone.
     """
     size = targets.norm(dim=1)
     relative = size / size[~own].square().mean().sqrt().clamp(min=torch.finfo(size.dtype).tiny)
@@ -140,4 +140,4 @@ def spread(x: Tensor) -> float:
 
 
 def _kernel(a: Tensor, b: Tensor, width: float) -> Tensor:
-    return torch.cdist(a, b).square_().div_(-width).exp_()  # in place: this is where a lesson's time goes
+    return torch.cdist(a, b).square_().div_(-width).exp_()  # in place, as most of a regression's time goes here

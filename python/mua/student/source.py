@@ -1,4 +1,4 @@
-"""Where the subbands of the training frames come from: memory where they fit, the recording's files where not."""
+"""The source of the training frames' subbands: memory where they fit, else the recording's files."""
 
 from collections.abc import Callable
 
@@ -10,11 +10,11 @@ from mua.training.processes import ALONE, Processes
 from mua.wavelets import Bands
 
 HELD_BYTES = 1 << 30  # subbands up to this size are kept in memory, larger ones are read batch by batch
-GPU_SHARE = 0.5  # of what is free on a GPU may be taken by subbands; the rest is for the factorisation
+GPU_SHARE = 0.5  # share of a GPU's free memory for subbands; the rest is for the factorisation
 READ_FRAMES = 64  # at once
 CPU = torch.device("cpu")
 
-Source = Callable[[slice, Tensor], Bands]  # the subbands of channels and rows of the training frames
+Source = Callable[[slice, Tensor], Bands]  # gives the subbands of channels and rows of the training frames
 
 
 def hold(
@@ -51,7 +51,7 @@ def room(device: torch.device) -> int:
     if device.type != "cuda":
         return HELD_BYTES
     free, _ = torch.cuda.mem_get_info(device)
-    idle = torch.cuda.memory_reserved(device) - torch.cuda.memory_allocated(device)  # torch keeps what it freed
+    idle = torch.cuda.memory_reserved(device) - torch.cuda.memory_allocated(device)  # torch caches freed memory
     return int(GPU_SHARE * (free + idle))
 
 

@@ -32,21 +32,21 @@ from mua.training.processes import ALONE, Processes
 from mua.wavelets import Bands
 
 BRANCHES = ("geometry", "appearance")
-# What bases learn from images holds for unseen motion too, while faster MLPs learn the frames by heart.
+# Bases fitted by images also serve unseen motion, while faster MLPs overfit the frames.
 SEEN_BASIS_RATE = 12.0  # learning rate of the bases relative to that of the MLP
 
 
 @dataclass(frozen=True, eq=False)
 class Samples:
-    """F training frames as the student sees them."""
+    """F training frames as inputs of the distillation."""
 
-    descriptors: Tensor  # [F, D] as `mua.pose.descriptor` makes them
+    descriptors: Tensor  # [F, D] from `mua.pose.descriptor`
     meshes: Tensor  # [F, V, 3] canonical vertices, metres
     subbands: Source
     mean_texture: Tensor  # [N, 23] mean over the training frames at the valid texels
-    parts: Parts | None = None  # of the character; without them, or with a fade of 1, nothing is local
-    weights: Tensor | None = None  # [F] how much each frame counts; the mean texture is over those of 1; None: all
-    sensitivities: Callable[[Run], Bands] | None = None  # of images to samples; without them, the paper's loss counts
+    parts: Parts | None = None  # body parts of the character; without them, or with a fade of 1, nothing is local
+    weights: Tensor | None = None  # [F] by frame; the mean texture is over those of weight 1; None: all equal
+    sensitivities: Callable[[Run], Bands] | None = None  # of images to samples; None: the paper's loss is used
 
     def __len__(self) -> int:
         return len(self.descriptors)
@@ -63,7 +63,7 @@ def train(
     only: StageName | None = None,
     processes: Processes = ALONE,
 ) -> None:
-    """Train `student` (its components set) in place on `samples`; resumes from `checkpoints`.
+    """Distil `samples` into `student` in place, whose components are set; resumes from `checkpoints`.
 
     Several `processes` share the work and end with the same student; the first of them reports and keeps checkpoints.
     With `only` one stage is run up to its checkpoints, which any later run takes up; the student is then unfinished.
@@ -93,12 +93,12 @@ def train(
     if only == "coarse":
         return
     seen = None if random else _sensitivities(samples, run.alone(SENSITIVITIES))
-    learn = partial(
+    warm = partial(
         fit_branch, components=components, parts=samples.parts, until=only, sensitivities=seen, frames=counts
     )
-    fit = fit_branch_from_noise if random else learn
+    fit = fit_branch_from_noise if random else warm
 
-    def teach(name: str, branch: Branch, channels: slice, run: Run) -> None:
+    def fit_named(name: str, branch: Branch, channels: slice, run: Run) -> None:
         source = hold(
             samples.subbands,
             channels,
@@ -111,7 +111,7 @@ def train(
         fit(branch, inputs, source, channels=channels, settings=settings, name=name, run=run.alone(name))
 
     branches = zip(BRANCHES, student.branches, (GEOMETRY, APPEARANCE), strict=True)
-    each_branch([partial(teach, *branch) for branch in branches], run)
+    each_branch([partial(fit_named, *branch) for branch in branches], run)
     if only is not None:
         return
     low = student.mean_lowpass() if counts is None else mean_lowpass(student, samples)
@@ -120,7 +120,7 @@ def train(
 
 
 def mean_lowpass(student: Student, samples: Samples) -> Tensor:
-    """What the mean subbands of the frames that the mean texture is over put into the valid texels [23, N]."""
+    """The contribution to the valid texels [23, N] of the mean subbands over the mean texture's frames."""
     assert samples.weights is not None
     rows = torch.nonzero(samples.weights == 1)[:, 0]
     means = [
@@ -134,7 +134,7 @@ def mean_lowpass(student: Student, samples: Samples) -> Tensor:
 
 
 def _sensitivities(samples: Samples, run: Run) -> Bands | None:
-    """What the samples measure, kept for a run that goes on; None where they measure nothing."""
+    """The samples' sensitivities, kept for a resumed run; None where they measure none."""
     measure = samples.sensitivities
     if measure is None:
         return None
@@ -161,7 +161,7 @@ def stages(settings: Settings) -> dict[StageName, tuple[str, ...]]:
 
 
 def require_earlier(only: StageName, settings: Settings, checkpoints: Checkpoints) -> None:
-    """Raises InputError where the recipe has no stage `only`, or a checkpoint that it starts from is not finished."""
+    """Raise InputError where the recipe has no stage `only`, or a checkpoint that it starts from is not finished."""
     needed = stages(settings)
     if only not in needed:
         raise InputError(f"--stage {only}: this recipe has no such stage; expected {' or '.join(needed)}")
@@ -169,7 +169,7 @@ def require_earlier(only: StageName, settings: Settings, checkpoints: Checkpoint
         if stage == only:
             return
         for name in names:
-            # nothing that follows starts from the coarse mesh; sensitivities are measured again where they are missing
+            # no later stage starts from the coarse mesh; missing sensitivities are measured again
             if stage != "coarse" and name != SENSITIVITIES and not checkpoints.finished(name):
                 raise InputError(
                     f"--stage {only}: {checkpoints.directory} holds no finished {name!r}; run --stage {stage} first"
@@ -179,7 +179,7 @@ def require_earlier(only: StageName, settings: Settings, checkpoints: Checkpoint
 def fit_branch(
     branch: Branch,
     inputs: Tensor,  # [F, D] normalised descriptors
-    source: Source,  # of the branch's channels, counted from 0
+    source: Source,  # subbands of the branch's channels, counted from 0
     *,
     channels: slice,
     components: Components,
@@ -188,10 +188,10 @@ def fit_branch(
     run: Run,
     parts: Parts | None = None,
     until: StageName | None = None,
-    sensitivities: Bands | None = None,  # of images to the samples of all 23 channels, of one frame
+    sensitivities: Bands | None = None,  # sensitivities of images to the samples of all 23 channels, for one frame
     frames: Tensor | None = None,  # [F] how much each frame counts
 ) -> None:
-    """Train one branch: closed-form bases, regression of the MLP on their coefficients, joint fine-tuning.
+    """Fit one branch: closed-form bases, regression of the MLP on their coefficients, joint fine-tuning.
 
     Stops after the stage `until`.
     """
@@ -236,7 +236,7 @@ def fit_branch(
 def start_branch(
     branch: Branch,
     inputs: Tensor,  # [F, D] normalised descriptors
-    source: Source,  # of the branch's channels, counted from 0
+    source: Source,  # subbands of the branch's channels, counted from 0
     *,
     channels: slice,
     components: Components,
@@ -245,10 +245,10 @@ def start_branch(
     run: Run,
     parts: Parts | None = None,
     until: StageName | None = None,
-    sensitivities: Bands | None = None,  # of images to the samples of all 23 channels, of one frame
+    sensitivities: Bands | None = None,  # sensitivities of images to the samples of all 23 channels, for one frame
     frames: Tensor | None = None,  # [F] how much each frame counts
 ) -> Tensor:
-    """Closed-form bases, and an MLP taught their coefficients, conditioned for what follows; not if `until` "bases".
+    """Closed-form bases, and an MLP fitted to their coefficients, conditioned for fine-tuning; not if `until` "bases".
 
     Returns the weight [C] of each channel's error.
     """

@@ -1,4 +1,4 @@
-"""What the coefficient MLPs regress: the joint principal directions of all blendshape coefficients of a branch.
+"""Targets of the coefficient MLPs: the joint principal directions of all blendshape coefficients of a branch.
 
 Coefficients are first expressed so that a squared error in them is the squared error in the texture that they stand
 for; the few hundred directions that matter are regressed, and the linear map back is folded into the MLP's last layer.
@@ -14,10 +14,10 @@ from mua.channels import ATTRIBUTES
 from mua.student.factorize import frame_weights, truncated_svd
 from mua.student.model import Branch, outer_products
 
-# No one sees an attribute vary by less, in its own unit (metres on a person, quaternion, log scale, logit, SH).
+# Smaller variation is invisible, in each attribute's unit (metres on a person, quaternion, log scale, logit, SH).
 LEAST_SPREAD = {"offset": 1e-5, "rotation": 1e-4, "scale": 1e-4, "opacity": 1e-3, "SH": 1e-4}
 GRAM_RIDGE = 1e-6
-ROUNDING = 2.0**-12  # of a recording, which keeps half-precision differences: directions of less than it are noise
+ROUNDING = 2.0**-12  # rounding of a recording's half-precision differences; directions of less variance are noise
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,9 +30,9 @@ class Targets:
 
 def channel_weights(
     variance: Tensor,  # [C] over training frames and texels
-    channels: slice,  # which of the 23 these are
+    channels: slice,  # the branch's channels among the 23
     *,
-    size: float = 1.0,  # of the figure over that of a person
+    size: float = 1.0,  # size of the figure over that of a person
 ) -> Tensor:
     """The weight [C] of each channel's error: one over the spread of its attribute.
 
@@ -47,20 +47,20 @@ def channel_weights(
 
 def still_channels(
     variance: Tensor,  # [C] over training frames and texels
-    channels: slice,  # which of the 23 these are
+    channels: slice,  # the branch's channels among the 23
     *,
-    size: float = 1.0,  # of the figure over that of a person
+    size: float = 1.0,  # size of the figure over that of a person
 ) -> Tensor:
-    """Which channels [C] hardly vary: what their blendshapes would hold is rounding."""
+    """Channels [C] that hardly vary, whose blendshapes would hold only rounding."""
     return variance.sqrt() < least_spread(channels, size=size).to(variance)
 
 
 def least_spread(
-    channels: slice,  # which of the 23 these are
+    channels: slice,  # the branch's channels among the 23
     *,
-    size: float = 1.0,  # of the figure over that of a person
+    size: float = 1.0,  # size of the figure over that of a person
 ) -> Tensor:
-    """By how much each channel [C] has to vary to be seen, in its own unit."""
+    """The least visible variation of each channel [C], in its own unit."""
     least = torch.empty(channels.stop - channels.start)
     for name, own in _attributes(channels):
         least[own] = LEAST_SPREAD[name] * (size if name == "offset" else 1.0)

@@ -1,1 +1,1 @@
-"""What every training shares: a resumable run of Adam, checkpoints, processes, threads and memory."""
+"""The parts that all trainings share: a resumable run of Adam, checkpoints, processes, threads and memory."""

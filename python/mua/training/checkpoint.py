@@ -1,4 +1,4 @@
-"""Checkpoints of a training: one file per stage, replaced atomically, ignored where they belong to another run."""
+"""Checkpoints of a training: one file per stage, replaced atomically, ignored if they belong to another run."""
 
 import hashlib
 import pickle
@@ -17,14 +17,14 @@ from mua.version import __version__
 
 @dataclass(frozen=True)
 class Checkpoints:
-    """The stages of one run in a directory; `key` says which run (see `run_key`)."""
+    """The stages of one run in a directory; `key` identifies the run (see `run_key`)."""
 
     directory: Path
     key: str
-    processes: Processes = ALONE  # the first of them writes and reads, and tells the others
+    processes: Processes = ALONE  # the first one writes, reads and broadcasts
 
     def save(self, stage: str, state: dict[str, Any]) -> None:
-        """Replace what is kept of `stage`; a kill at any moment leaves the old state or the new.
+        """Replace the checkpoint of `stage`; a kill at any moment leaves the old state or the new.
 
         Raises InputError where it cannot be written; the old state is kept then too.
         """
@@ -33,13 +33,13 @@ class Checkpoints:
         with replacing(self._path(stage)) as temporary, temporary.open("wb") as file:
             try:
                 torch.save({"key": self.key, "state": state}, file)
-            except RuntimeError as error:  # of torch's archive, when the file below it refused to write
+            except RuntimeError as error:  # torch's archive hides the system's error as its context
                 if isinstance(error.__context__, OSError):
                     raise error.__context__ from None
                 raise
 
     def load(self, stage: str) -> dict[str, Any] | None:
-        """What was kept of `stage`; None where there is nothing, or it is damaged or of another run."""
+        """The checkpoint of `stage`; None where it is missing, damaged or of another run."""
         return self.processes.broadcast_object(self._read(stage) if self.processes.first else None)
 
     def _read(self, stage: str) -> dict[str, Any] | None:
@@ -52,12 +52,12 @@ class Checkpoints:
         return dict(kept["state"])
 
     def finished(self, stage: str) -> bool:
-        """Whether `stage` is kept and needs no further step."""
+        """Whether the checkpoint of `stage` needs no further step."""
         kept = self.load(stage)
         return kept is not None and bool(kept.get("finished", True))
 
     def remove_leftovers(self, stages: Iterable[str]) -> None:
-        """Remove what killed runs left half written of `stages`."""
+        """Remove half-written checkpoints of `stages` that killed runs left."""
         for stage in stages:
             remove_leftovers(self._path(stage))
 

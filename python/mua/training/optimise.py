@@ -1,4 +1,4 @@
-"""One resumable run of Adam: the loop that every trained stage of a distillation shares."""
+"""One resumable run of Adam: the loop that all stages with gradient descent share."""
 
 import hashlib
 import time
@@ -17,12 +17,12 @@ CHECKPOINT_STEPS = 200
 
 @dataclass(frozen=True)
 class Progress:
-    """Where a distillation stands."""
+    """The progress of a stage."""
 
     stage: str
     step: int  # finished steps
     steps: int
-    loss: float | None  # None in stages that solve instead of descend
+    loss: float | None  # None in closed-form stages
     rate: float  # steps per second of this stage
 
 
@@ -31,22 +31,22 @@ Report = Callable[[Progress], None]
 
 @dataclass(frozen=True)
 class Run:
-    """What every stage of a distillation shares."""
+    """The parts that all stages of a training share."""
 
     generator: torch.Generator
     checkpoints: Checkpoints
     report: Report
     device: torch.device
     processes: Processes = ALONE
-    size: float = 1.0  # of the figure over that of a person
+    size: float = 1.0  # size of the figure over that of a person
 
     def alone(self, stage: str) -> "Run":
-        """The same run with a generator of the stage's own: it draws the same numbers alone as after other stages."""
+        """The run with a generator of the stage's own, which draws the same numbers alone as after other stages."""
         digest = hashlib.sha256(f"{self.generator.initial_seed()} {stage}".encode()).digest()
         return replace(self, generator=torch.Generator().manual_seed(int.from_bytes(digest[:7], "little")))
 
     def once(self, stage: str, solve: Callable[[], dict[str, Tensor]]) -> dict[str, Tensor]:
-        """What `solve` gives, alike in all processes and kept for a run that goes on.
+        """The result of `solve`, equal in all processes and kept for a resumed run.
 
         Directions are found up to their sign, which another machine or number of threads chooses anew: what was trained
         on the old ones must not be read by the new.
@@ -63,20 +63,20 @@ class Run:
 
 def optimise(
     module: nn.Module,
-    loss: Callable[[nn.Module], Tensor],  # of what stands for `module` among the processes, over this one's share
+    loss: Callable[[nn.Module], Tensor],  # loss of the wrapped `module` over this process's share
     *,
     schedule: Schedule,
     parameters: list[dict[str, object]],
     stage: str,
     run: Run,
-    every: int | None = None,  # steps from checkpoint to checkpoint; None: CHECKPOINT_STEPS
+    every: int | None = None,  # steps between checkpoints; None: CHECKPOINT_STEPS
 ) -> None:
     """Run AdamW over `schedule` from the stage's last checkpoint; a group's `lr` is relative to the schedule's.
 
     After a kill, a resumed run ends in the same bytes: model, optimiser and generator continue from the same state.
     """
     relative = [float(group.pop("lr", 1.0)) for group in parameters]  # type: ignore[arg-type]
-    optimizer = torch.optim.AdamW(parameters, lr=schedule.lr, fused=True)  # one pass over the weights
+    optimizer = torch.optim.AdamW(parameters, lr=schedule.lr, fused=True)  # one kernel over all weights
     first = _restore(module, optimizer, stage=stage, run=run)
     model = run.processes.wrap(module)
     started = time.monotonic()

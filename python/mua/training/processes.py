@@ -1,4 +1,4 @@
-"""The processes that train one student together: which frames each one holds, and what they exchange.
+"""The processes that distil one student together: which frames each holds, and what they exchange.
 
 Data-parallel training as in Li et al. 2020, https://arxiv.org/abs/2006.15704, through torch's own
 DistributedDataParallel; `torchrun` starts the processes and says through the environment which one each is.
@@ -19,10 +19,10 @@ from torch.nn.parallel import DistributedDataParallel
 
 from mua.errors import InputError
 
-TIMEOUT = timedelta(minutes=10)  # longer than any process computes between two exchanges
-BARRIER_TIMEOUT = timedelta(days=7)  # for others to record their part; a process that ends is noticed at once
-HALVES = 2  # that a process alone computes a batch in: as two processes do, so that both add up the same numbers
-# What the errors of gloo and NCCL say of a process that is gone or silent, and of nothing else.
+TIMEOUT = timedelta(minutes=10)  # longer than the computation between two exchanges
+BARRIER_TIMEOUT = timedelta(days=7)  # for others to record their parts; a process that ends is noticed at once
+HALVES = 2  # parts in which a single process computes a batch, so that it adds up the same numbers as two processes
+# Texts of gloo's and NCCL's errors that occur only where a process is gone or silent.
 LOST = (
     *("Connection closed", "Connection reset", "Broken pipe", "ncclRemoteError"),
     *("Timed out", "wait timeout", "Socket Timeout", "collective operation timeout", "Application timeout"),
@@ -33,11 +33,11 @@ T = TypeVar("T")
 
 @dataclass(frozen=True, eq=False)
 class Share:
-    """What one process computes of a batch that is drawn for all of them."""
+    """One process's part of a batch that is drawn for all of them."""
 
     rows: Tensor  # [B'] at least one
-    held: range  # the frames that they are among
-    weight: float  # of their mean loss: its average over the processes is then the mean over the whole batch
+    held: range  # the frames that contain them
+    weight: float  # weight of their mean loss, so that the average over the processes is the mean over the whole batch
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class Processes:
 
     @property
     def first(self) -> bool:
-        """Whether this is the one that writes and reports."""
+        """Whether this process writes and reports."""
         return self.rank == 0
 
     def place(self, device: torch.device) -> torch.device:
@@ -77,11 +77,11 @@ class Processes:
 
     def shares(
         self,
-        rows: Tensor,  # [B] the whole batch, the same in all processes
+        rows: Tensor,  # [B] the whole batch, equal in all processes
         *,
-        frames: int,  # that `rows` are drawn from
+        frames: int,  # number of frames that `rows` are drawn from
     ) -> list[Share]:
-        """What this process computes of a batch; where it holds none of it, one row that weighs nothing."""
+        """This process's shares of a batch; where it holds none of it, one row of weight 0."""
         shares = []
         for rest, part in enumerate(self.parts(frames), start=self.rank):
             own = rows[rows % part.step == rest]
@@ -92,16 +92,16 @@ class Processes:
 
     def mean_loss(
         self,
-        rows: Tensor,  # [B] the whole batch, the same in all processes
+        rows: Tensor,  # [B] the whole batch, equal in all processes
         loss: Callable[[Share], Tensor],  # the mean over the share's rows
         *,
-        frames: int,  # that `rows` are drawn from
+        frames: int,  # number of frames that `rows` are drawn from
     ) -> Tensor:
         """This process's part of the mean loss over a batch, which is the average of all parts."""
         return torch.stack([share.weight * loss(share) for share in self.shares(rows, frames=frames)]).sum()
 
     def channels(self, count: int) -> range:
-        """Of `count` channels those that this process solves for; see `owner`."""
+        """The channels out of `count` that this process solves for; see `owner`."""
         return range(self.rank, count, self.count)
 
     def owner(self, channel: int) -> int:
@@ -109,11 +109,11 @@ class Processes:
         return channel % self.count
 
     def wrap(self, module: nn.Module) -> nn.Module:
-        """`module`, its gradients averaged over all processes; every process goes on from the first one's weights."""
+        """`module` with its gradients averaged over all processes; all start from the first one's weights."""
         if self.count == 1:
             return module
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", FutureWarning)  # torch 2.13 has another name for it, which 2.4 lacks
+            warnings.simplefilter("ignore", FutureWarning)  # deprecated in torch 2.13 for a name that 2.4 lacks
             return DistributedDataParallel(module, broadcast_buffers=False)
 
     @torch.no_grad()

@@ -1,4 +1,4 @@
-"""How long a training runs and how fast it learns."""
+"""The length of a training and its learning rate."""
 
 import math
 from dataclasses import dataclass, replace
@@ -6,14 +6,14 @@ from dataclasses import dataclass, replace
 
 @dataclass(frozen=True)
 class Schedule:
-    """One run of Adam."""
+    """The schedule of one run of Adam."""
 
     steps: int
     batch: int  # frames per step
     lr: float  # learning rate at its highest
     cosine: bool = True  # whether the learning rate decays to zero along a cosine; else it is constant
     warm_up: float = 0.0  # share of the steps in which the learning rate rises from zero
-    epochs: float = math.inf  # at most; with few frames they end the training before `steps`
+    epochs: float = math.inf  # most epochs; with few frames they end the training before `steps`
 
     def over(self, frames: int) -> "Schedule":
         """The schedule for a number of training frames."""

@@ -11,7 +11,7 @@ B = TypeVar("B")
 
 
 def in_order(work: Callable[[A], B], items: Iterable[A], *, threads: int) -> Iterator[B]:
-    """What `work` gives for each item, in the order of the items; no more of them are held than threads are busy."""
+    """Results of `work` in the order of the items; no more of them are in memory than threads are busy."""
     items = iter(items)
     with ThreadPoolExecutor(threads) as pool:
         pending: deque[Future[B]] = deque(pool.submit(work, item) for item in islice(items, threads))

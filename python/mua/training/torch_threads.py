@@ -8,7 +8,7 @@ import torch
 
 @contextmanager
 def thread_share(parts: int) -> Iterator[None]:
-    """Let torch compute with one of so many parts of its threads within the block, in each thread that asks it to."""
+    """Let torch use 1 / `parts` of its threads within the block, in each thread that calls this."""
     threads = torch.get_num_threads()
     torch.set_num_threads(max(threads // parts, 1))
     try:

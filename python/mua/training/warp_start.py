@@ -1,4 +1,4 @@
-"""Start Warp on the processor without its greeting, and without what it says of a GPU that is not there."""
+"""Starts Warp on the CPU without its greeting and its complaint about a missing GPU."""
 
 import os
 import tempfile
@@ -7,7 +7,7 @@ from contextlib import contextmanager
 
 import warp as wp
 
-NO_GPU = b"Could not find or load the NVIDIA CUDA driver"  # what the teacher runs on is a processor anyway
+NO_GPU = b"Could not find or load the NVIDIA CUDA driver"  # the teacher runs on the CPU anyway
 
 
 def start() -> None:

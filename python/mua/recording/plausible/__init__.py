@@ -1,4 +1,4 @@
-"""Whether a rig and its frames look like what is expected of them, or like a mistake in units or conventions.
+"""Finds likely mistakes in units or conventions in a rig and its frames.
 
 A check is quiet on everything that may be meant: it compares with the rig, and speaks where half of all numbers are far
 off and, for what is refused, where one known mistake explains them.
@@ -30,7 +30,7 @@ class Plausible:
         self._orientations = Orientations(rig)
 
     def pose(self, pose: Pose) -> Iterator[Finding]:
-        """What looks like a mistake in a pose whose shapes are right."""
+        """Likely mistakes in a pose of the right shapes."""
         return self._poses(pose)
 
     def mesh(
@@ -38,7 +38,7 @@ class Plausible:
         pose: Pose,
         mesh: Array,  # [V, 3]
     ) -> Iterator[Finding]:
-        """What looks like a mistake in a mesh whose shape is right."""
+        """Likely mistakes in a mesh of the right shape."""
         return self._meshes(mesh, pose)
 
     def frame(
@@ -48,7 +48,7 @@ class Plausible:
         texture: Array,  # [N, 23] at the valid texels
         image: Array | None = None,  # [H, W, 23] that it was taken from
     ) -> Iterator[Finding]:
-        """What looks like a mistake in mesh and texture whose shapes are right."""
+        """Likely mistakes in a mesh and texture of the right shapes."""
         yield from self.mesh(pose, mesh)
         yield from self._textures(texture, mesh)
         yield from self._orientations(texture, mesh, pose, image)

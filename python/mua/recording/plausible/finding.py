@@ -1,4 +1,4 @@
-"""What looks like a mistake in units or conventions."""
+"""A likely mistake in units or conventions."""
 
 from dataclasses import dataclass
 

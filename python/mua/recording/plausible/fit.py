@@ -1,4 +1,4 @@
-"""Which unit, or which axes, would make given points the expected ones: how a mistake in conventions is known."""
+"""Finds the unit or axes that turn given points into the expected ones, which identifies a mistaken convention."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -9,21 +9,21 @@ import numpy as np
 from mua.arrays import Array
 
 UNITS = {1000.0: "millimetres", 100.0: "centimetres", 39.37: "inches", 0.01: "hundreds of metres", 0.001: "kilometres"}
-UNIT_ERROR = 1.6  # between the ratio that was found and the unit that it is taken for
-EXPLAINED = 0.25  # of the distance: what a mistake leaves of it once it is undone
+UNIT_ERROR = 1.6  # tolerance between the ratio found and that of the unit
+EXPLAINED = 0.25  # share of the distance that remains once a mistake is undone
 Z_UP, LEFT_HANDED = ("x", "z", "-y"), {("-x", "y", "z"), ("x", "y", "-z")}
 
 
 @dataclass(frozen=True)
 class Mistake:
-    """What would bring points where they are expected."""
+    """The change that brings points to the expected places."""
 
     question: str
-    distance: float  # that is left, root mean square, in the unit of what is expected
+    distance: float  # remaining distance, root mean square, in the unit of the expected points
 
 
 def unit_of(ratio: float) -> str | None:
-    """The unit in which lengths are so many times the expected metres."""
+    """The unit in which lengths are `ratio` times the expected metres."""
     for factor, name in UNITS.items():
         if factor / UNIT_ERROR < ratio < factor * UNIT_ERROR:
             return name

@@ -12,18 +12,18 @@ from mua.recording.plausible.finding import Finding
 from mua.recording.plausible.fit import EXPLAINED, explain, rms, unit_of
 from mua.rig.rig import Rig
 
-SAMPLES = 1024  # vertices that are looked at
-NEAR = 0.05  # of the figure's size: how far a canonical mesh is from the template on average, loose clothes included
-FAR = 1.0  # likewise, for a mesh that nothing explains
+SAMPLES = 1024  # vertices that are checked
+NEAR = 0.05  # share of the figure's size: mean distance of a canonical mesh from the template, loose clothes included
+FAR = 1.0  # likewise, for a mesh that no known mistake explains
 
 
 class Meshes:
-    """What the canonical meshes of one rig look like."""
+    """Checks the canonical meshes of one rig."""
 
     def __init__(
         self,
         rig: Rig,
-        size: float,  # of the figure, metres
+        size: float,  # size of the figure, metres
     ) -> None:
         count = len(rig.mesh.vertices)
         self._rows = np.unique(np.linspace(0, count - 1, min(count, SAMPLES)).astype(int))
@@ -35,7 +35,7 @@ class Meshes:
         mesh: Array,  # [V, 3]
         pose: Pose,
     ) -> Iterator[Finding]:
-        """What looks like a mistake in a mesh whose shape is right."""
+        """Likely mistakes in a mesh of the right shape."""
         given = np.asarray(mesh[self._rows], dtype=np.float64)
         away = rms(given - self._template)
         if away <= NEAR * self._size:

@@ -1,4 +1,4 @@
-"""How flat splats lie on the surface: what tells the order of quaternions and of texels, and posed from canonical."""
+"""How flat splats lie on the surface, which shows the order of quaternions and texels, and posed meshes."""
 
 from collections.abc import Iterator
 from itertools import product
@@ -13,8 +13,8 @@ from mua.pose.skeleton import Pose
 from mua.recording.plausible.finding import Finding
 from mua.rig.rig import Rig
 
-SAMPLES = 2048  # texels that are looked at
-FLAT = np.log(1.5)  # between the thinnest and the next axis of a splat that has a side
+SAMPLES = 2048  # texels that are checked
+FLAT = np.log(1.5)  # between the logarithms of a flat splat's thinnest axis and the next
 ALONG = 0.8  # cosine between a splat's thin axis and the normal from which on it lies on the surface; 0.2 do by chance
 ASKEW, LYING = 0.85, 0.95  # shares of the flat splats that lie: fewer, and more once a mistake is undone
 ROTATION, SCALE = ATTRIBUTES["rotation"], ATTRIBUTES["scale"]
@@ -51,7 +51,7 @@ class Orientations:
     def _attempts(
         self, texture: Array, normals: Array, pose: Pose, image: Array | None
     ) -> Iterator[tuple[str, tuple[Array, Array]]]:
-        """What may have been meant: a question, then splats [n, 23] and the normals [n, 3] that they would lie on."""
+        """Other readings of the values: a question, then splats [n, 23] and the normals [n, 3] they would lie on."""
         some = texture[self._rows].copy()
         some[:, ROTATION] = np.roll(some[:, ROTATION], 1, axis=1)
         yield "if quaternions are xyzw: are they? wxyz is expected", (some, normals)
@@ -68,7 +68,7 @@ class Orientations:
         return rotation.rotate(blend_texels(vertices, rig.mesh.faces, self._triangles, barycentrics)[:, :4], normals)
 
     def _orders(self, texture: Array) -> Iterator[tuple[str, Array]]:
-        """The same values as if valid texels had been counted in another order."""
+        """The values as if valid texels had been counted in another order."""
         row, column = np.divmod(self._rig.texels.texels, self._rig.texels.size)
         for by_column, up, left in product((False, True), repeat=3):
             keys = (-column if left else column, -row if up else row)
@@ -84,7 +84,7 @@ def _turned(
     image: Array,  # [H, W, 23]
     texels: Array,  # [N]
 ) -> Iterator[tuple[str, Array]]:
-    """What an image holds at the valid texels if it is transposed or mirrored."""
+    """The values at the valid texels of a transposed or mirrored image."""
     for transposed, up, left in product((False, True), repeat=3):
         if not (transposed or up or left):
             continue

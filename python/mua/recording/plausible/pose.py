@@ -11,20 +11,20 @@ from mua.recording.plausible.finding import Finding
 from mua.recording.plausible.fit import explain, rms, unit_of
 
 TURNED, CALM = np.radians(100), np.radians(50)  # a joint's median turn away from the bind pose, wrong and undone
-OTHER_LENGTH = 10.0  # times a bone's: no animation stretches all by as much
-MOVED = 0.1  # of the bones' lengths: what animation may do to the translations of all joints together
+OTHER_LENGTH = 10.0  # factor of a bone's length by which no animation stretches all bones
+MOVED = 0.1  # share of the bones' lengths by which animation may change all joints' translations together
 FAR, HIGH = 100.0, 20.0  # heights of the figure, or of a person, from the origin
 PERSON = 1.75  # metres
-FEW = 4  # joints; fewer say nothing together
+FEW = 4  # joints; fewer prove nothing
 
 
 class Poses:
-    """What the poses of one skeleton look like."""
+    """Checks the poses of one skeleton."""
 
     def __init__(
         self,
         skeleton: Skeleton,
-        size: float,  # of the figure, metres
+        size: float,  # size of the figure, metres
     ) -> None:
         self._skeleton, self._reach = skeleton, max(size, PERSON)
         self._path = [*reversed(skeleton.ancestors(skeleton.root)), skeleton.root]
@@ -33,13 +33,13 @@ class Poses:
         self._place = self._root(skeleton.bind_pose)
 
     def __call__(self, pose: Pose) -> Iterator[Finding]:
-        """What looks like a mistake in a pose whose shapes are right."""
+        """Likely mistakes in a pose of the right shapes."""
         yield from self._rotations(pose.rotations)
         yield from self._bone_lengths(pose.translations)
         yield from self._standing(pose)
 
     def _rotations(self, given: Array) -> Iterator[Finding]:
-        """Joints turn little from the bind pose: if half of them turn far as given and little otherwise, it is that."""
+        """Joints turn little from the bind pose: where half turn far, another convention may explain it."""
         turned = self._turn(given)
         if turned < TURNED or len(given) < FEW:
             return

@@ -1,4 +1,4 @@
-"""Rigs that programs put together themselves: shapes, sizes, and whether template and skeleton belong together."""
+"""Checks rigs assembled by other programs: shapes, sizes, and whether template and skeleton belong together."""
 
 from collections.abc import Iterator
 
@@ -12,21 +12,21 @@ from mua.rig.rig import Rig
 
 SMALLEST, LARGEST = 0.01, 100.0  # metres: the sizes of figures that bake, bounds and player are made for
 PERSON = 1.75  # metres
-WEIGHT_ERROR = 1e-3  # of the sum of a vertex's skin weights
-INSIDE_OUT = -0.3  # of the volumes of all triangles' tetrahedra, those that face inward counted as negative
-FEW = 3  # joints with skin; fewer say nothing together
-NEAR = 0.2  # of the figure's size: how far they are once a mistake is undone
-APART = 0.3  # of the figure's size: how far joints may be from the skin that they move, on average
+WEIGHT_ERROR = 1e-3  # tolerance of the sum of a vertex's skin weights
+INSIDE_OUT = -0.3  # share of the volumes of all triangles' tetrahedra, with inward ones negative
+FEW = 3  # joints with skin; fewer prove nothing
+NEAR = 0.2  # share of the figure's size: their distance once a mistake is undone
+APART = 0.3  # share of the figure's size: mean distance allowed between joints and the skin they move
 
 
 def rig_findings(rig: Rig) -> Iterator[Finding]:
-    """What looks like a mistake in a rig; with a wrong shape or index, that alone."""
+    """Likely mistakes in a rig; wrong shapes or indices are reported alone."""
     wrong = list(_names(rig.skeleton)) or list(_shapes(rig)) or list(_indices(rig))
     yield from wrong or [*_size(rig), *_weights(rig), *_joints(rig), *_facing(rig)]
 
 
 def _names(skeleton: Skeleton) -> Iterator[Finding]:
-    """Joints have a name each, by which motion and the players find them."""
+    """Every joint has its own name, by which motion and the players find it."""
     names, joints = skeleton.names, len(skeleton.parents)
     if len(names) != joints:
         yield Finding(
@@ -65,7 +65,7 @@ def _shapes(rig: Rig) -> Iterator[Finding]:
 
 
 def _indices(rig: Rig) -> Iterator[Finding]:
-    """What counts vertices, joints and triangles, where all shapes are right."""
+    """Indices into vertices, joints and triangles are in range, where all shapes are right."""
     mesh, skeleton, texels = rig.mesh, rig.skeleton, rig.texels
     joints, vertices, valid = len(skeleton.names), len(mesh.vertices), len(texels.texels)
     limits = {

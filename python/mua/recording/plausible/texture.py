@@ -9,25 +9,25 @@ from mua.channels import APPEARANCE, ATTRIBUTES
 from mua.recording.plausible.finding import Finding
 from mua.rig.rig import Rig
 
-SAMPLES = 4096  # texels that are looked at
-LARGE, SMALL = 8.0, 0.01  # half of all splats are so many steps between texels long: far more, or less, than any need
-USUAL = 5.0  # times a step, or a fifth of it: what splats are about as long as
-BASE_TEN = 2.5  # times a step: where splats are longer, but not if their logarithms are to base 10, they may be so
-OFFSET, OFFSETS = 0.3, ATTRIBUTES["offset"]  # of the figure's size, for half of all splats
-LOOSE = 0.15  # of the same: half of all splats are nearer to the mesh, in loose clothes too
+SAMPLES = 4096  # texels that are checked
+LARGE, SMALL = 8.0, 0.01  # steps between texels: a median length of splats far beyond any need
+USUAL = 5.0  # factor of a step, or of a fifth of it: the usual length of splats
+BASE_TEN = 2.5  # factor of a step: longer splats may have logarithms to base 10 if these bring them near a step
+OFFSET, OFFSETS = 0.3, ATTRIBUTES["offset"]  # share of the figure's size, for the median splat
+LOOSE = 0.15  # share of the figure's size: the median splat is nearer to the mesh, even in loose clothes
 SMALLER = "are these centimetres or millimetres? metres are expected"
-BRIGHT = 5.0  # of an SH constant: 1.4 times white above grey
+BRIGHT = 5.0  # limit of an SH constant: 1.4 times white above grey
 SCALES_FIRST = "do the channels begin with the scales? offset 3, quaternion 4, log scale 3, opacity 1 are expected"
 LOGARITHMS = {"millimetres": 1000.0, "centimetres": 100.0}
 
 
 class Textures:
-    """What the textures of one rig look like."""
+    """Checks the textures of one rig."""
 
     def __init__(
         self,
         rig: Rig,
-        size: float,  # of the figure, metres
+        size: float,  # size of the figure, metres
     ) -> None:
         texels = rig.texels
         count = len(texels.texels)
@@ -41,7 +41,7 @@ class Textures:
         texture: Array,  # [N, 23] at the valid texels
         mesh: Array,  # [V, 3] canonical
     ) -> Iterator[Finding]:
-        """What looks like a mistake in a texture whose shape is right."""
+        """Likely mistakes in a texture of the right shape."""
         some = np.asarray(texture[self._rows], dtype=np.float64)
         empty: Array = np.linalg.norm(texture[:, ATTRIBUTES["rotation"]], axis=1) == 0
         if empty.any():
@@ -54,7 +54,7 @@ class Textures:
             yield from _colours(some[:, APPEARANCE].reshape(-1, 4, 3))
 
     def _scales(self, some: Array) -> Iterator[Finding]:
-        """Half of all splats are about as long as the way from a texel to the next."""
+        """The median splat is about as long as the distance between texels."""
         longest = some[:, ATTRIBUTES["scale"]].max(axis=1)
         steps = self._steps(longest)
         base_ten = steps > BASE_TEN and 1 / BASE_TEN < self._steps(longest * np.log(10)) < BASE_TEN
@@ -82,7 +82,7 @@ class Textures:
         return None
 
     def _offsets(self, some: Array, mesh: Array) -> Iterator[Finding]:
-        """Half of all splats are near the mesh."""
+        """The median splat is near the mesh."""
         offsets = some[:, OFFSETS]
         away = float(np.median(np.linalg.norm(offsets, axis=1)))
         if away <= LOOSE * self._size:
@@ -101,7 +101,7 @@ class Textures:
         yield Finding(f"{found}: {question}", certain=True)
 
     def _fits(self, logarithms: Array) -> bool:
-        """Whether half of all splats would be of a size that is expected."""
+        """Whether the median splat would have an expected size."""
         return 1 / USUAL < self._steps(logarithms) < USUAL
 
     def _steps(self, logarithms: Array) -> float:
@@ -152,7 +152,7 @@ def _colours(
 
 
 def _step(rig: Rig) -> float:
-    """The mean way from a texel to the next on the surface, metres."""
+    """The mean distance between neighbouring texels on the surface, metres."""
     used = np.unique(rig.texels.triangles)
     corners = rig.mesh.vertices[rig.mesh.faces[used]]
     areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
