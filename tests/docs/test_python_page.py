@@ -6,8 +6,8 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from pages import python_blocks
 from PIL import Image
+from python_blocks import python_blocks
 from synthetic_avatar import synthetic_avatar
 from trainings import SMALL
 

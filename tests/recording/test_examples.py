@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 import torch
 from examples import EXAMPLES, load_example
-from pages import python_blocks
 from PIL import Image
+from python_blocks import python_blocks
 
 from mua.asset.read import read
 from mua.pose.clip import Clip
