@@ -16,8 +16,8 @@ from typer.testing import CliRunner
 
 from mua.baking.check import Check
 from mua.baking.contact_sheet import CELL
-from mua.baking.order import Order
 from mua.baking.pipeline import bake
+from mua.baking.settings import BakeSettings
 from mua.characters.read import read_surfaces
 from mua.cli.bake import main
 from mua.cli.check import show
@@ -102,8 +102,8 @@ def test_a_bake_tells_the_fidelity_and_its_contact_sheet_begins_with_it(tmp_path
         def note(self, sentence: str) -> None:
             told.append(sentence)
 
-    order = Order(tmp_path / "a.muaavatar", tmp_path / "work", SMALL, "cpu", character=column_file(tmp_path))
-    baked = bake(order, Hearing())
+    settings = BakeSettings(tmp_path / "a.muaavatar", tmp_path / "work", SMALL, "cpu", character=column_file(tmp_path))
+    baked = bake(settings, Hearing())
     assert any(sentence.startswith("Splats compared with the source: silhouettes overlap by") for sentence in told)
     assert baked.sheet is not None
     with Image.open(baked.sheet) as sheet:

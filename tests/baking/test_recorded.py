@@ -11,8 +11,8 @@ import pytest
 from synthetic_avatar import synthetic_avatar
 
 from mua.baking import recorded as recordings
-from mua.baking.order import Order
 from mua.baking.recorded import recorded, recording_key
+from mua.baking.settings import BakeSettings
 from mua.pose.clip import Stretches
 from mua.recording import PlannedClip
 from mua.student.settings import preset
@@ -51,9 +51,9 @@ def test_it_is_made_by_as_many_processes_as_asked_for_and_told_by_frames(
 
     monkeypatch.setattr(recordings, "record_by_workers", by_workers)
     monkeypatch.setattr(recordings, "Recording", lambda directory: directory)
-    order = Order(tmp_path / "a.muaavatar", tmp_path / "work", preset("tiny"), jobs=3)
+    settings = BakeSettings(tmp_path / "a.muaavatar", tmp_path / "work", preset("tiny"), jobs=3)
     told = Told()
-    made = recorded(lambda: None, "key", order, [PLANNED, PLANNED], told)  # type: ignore[arg-type, return-value]
+    made = recorded(lambda: None, "key", settings, [PLANNED, PLANNED], told)  # type: ignore[arg-type, return-value]
     assert made == asked["directory"] == tmp_path / "work" / "recording-key"
     assert asked["jobs"] == 3
     assert told.heard == [("recording",), (4, 6, "3 at work")]

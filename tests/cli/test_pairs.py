@@ -19,12 +19,12 @@ from pathlib import Path
 sys.path.insert(0, sys.argv[1])
 from small_bakes import SMALL
 from silent import Silent
-from mua.baking.order import Order
+from mua.baking.settings import BakeSettings
 from mua.baking.pipeline import bake
 from mua.errors import InputError
-order = Order(Path(sys.argv[2]), Path(sys.argv[3]), SMALL, "cpu", jobs=2)
+settings = BakeSettings(Path(sys.argv[2]), Path(sys.argv[3]), SMALL, "cpu", jobs=2)
 try:
-    bake(order, Silent())
+    bake(settings, Silent())
 except InputError as error:
     sys.exit(str(error))
 """

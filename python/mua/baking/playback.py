@@ -4,8 +4,8 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from mua.baking.order import ALL, NONE
 from mua.baking.plan import ENDING
+from mua.baking.settings import ALL, NONE
 from mua.errors import InputError
 from mua.pose.clip import Clip, is_range
 from mua.recording import RecordedClip
