@@ -120,8 +120,8 @@ def test_without_the_range_the_same_is_recorded_of_the_users_motion(
 def test_the_file_says_what_was_held_out(baked: Baked) -> None:
     walk = read(baked.output).clips[0]
     assert f"held out of training: walk from frame {len(walk) - len(walk) // 5}, turn" in read(baked.output).notes
-    told = json.loads(baked.output.with_name("a_errors.json").read_text())
-    assert told["held_out_from"]["walk"] == len(walk) - len(walk) // 5
+    figures = json.loads(baked.output.with_name("a_errors.json").read_text())
+    assert figures["held_out_from"]["walk"] == len(walk) - len(walk) // 5
 
 
 def test_leaves_a_contact_sheet_and_figures(baked: Baked) -> None:
@@ -129,8 +129,8 @@ def test_leaves_a_contact_sheet_and_figures(baked: Baked) -> None:
     assert baked.figures is not None
     with Image.open(baked.sheet) as sheet:
         assert np.asarray(sheet).std() > 0
-    told = json.loads(baked.output.with_name("a_errors.json").read_text())
-    assert set(told["groups"]["training"]["rms"]) == set(ATTRIBUTES)
+    figures = json.loads(baked.output.with_name("a_errors.json").read_text())
+    assert set(figures["groups"]["training"]["rms"]) == set(ATTRIBUTES)
     assert "explained" in baked.figures.read_text()
 
 

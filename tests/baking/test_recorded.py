@@ -1,4 +1,4 @@
-"""A bake's recording: by as many processes as asked for, told of frame by frame, and another where anything differs."""
+"""A bake's recording: by as many processes as asked for, reported by frame, and another where anything differs."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -22,7 +22,7 @@ CLIP = synthetic_avatar().clips[0]
 PLANNED = PlannedClip(CLIP, held_out=False, wanted=frozenset({0, 2, 3}), whole=None)
 
 
-class Told:
+class Heard:
     """What a listener hears."""
 
     def __init__(self) -> None:
@@ -52,11 +52,11 @@ def test_it_is_made_by_as_many_processes_as_asked_for_and_told_by_frames(
     monkeypatch.setattr(recordings, "record_by_workers", by_workers)
     monkeypatch.setattr(recordings, "Recording", lambda directory: directory)
     settings = BakeSettings(tmp_path / "a.muaavatar", tmp_path / "work", preset("tiny"), jobs=3)
-    told = Told()
-    made = recorded(lambda: None, "key", settings, [PLANNED, PLANNED], told)  # type: ignore[arg-type, return-value]
+    listener = Heard()
+    made = recorded(lambda: None, "key", settings, [PLANNED, PLANNED], listener)  # type: ignore[arg-type, return-value]
     assert made == asked["directory"] == tmp_path / "work" / "recording-key"
     assert asked["jobs"] == 3
-    assert told.heard == [("recording",), (4, 6, "3 at work")]
+    assert listener.heard == [("recording",), (4, 6, "3 at work")]
 
 
 OTHERS: dict[str, PlannedClip] = {

@@ -10,7 +10,7 @@ import numpy as np
 
 from mua.baking.listener import Listener
 from mua.baking.settings import BakeSettings
-from mua.baking.sources import ordered_character
+from mua.baking.sources import load_baked_character
 from mua.errors import InputError
 from mua.fidelity import report
 from mua.fidelity.compare import Fidelity, compare
@@ -48,7 +48,7 @@ def check(settings: BakeSettings, listener: Listener) -> Check:
     """
     require_writable(settings.output)
     listener.stage("character")
-    character = ordered_character(settings)
+    character = load_baked_character(settings)
     listener.stage("motion")
     loaded = _loaded(settings, character)
     qualities = tuple(_quality(settings, character, motion) for motion in loaded)

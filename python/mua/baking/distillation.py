@@ -43,12 +43,12 @@ class Distillation:
     work: Path  # for the checkpoints
     settings: Settings
     device: torch.device
-    name: str  # of the avatar
+    name: str  # that the avatar gets
     teacher: str  # what the teacher is; stands in the avatar and beside every figure
-    clips: tuple[Clip, ...] | None = None  # of the character, whole; None: those of the recording, their ends joined
+    clips: tuple[Clip, ...] | None = None  # the character's, whole; None: the recording's, their ends joined
     playback: tuple[str, ...] = (ALL,)  # which of them the file holds, as `choose` reads it
     storage: Storage = "f16"
-    fidelity: Fidelity | None = None  # of the character, for the contact sheet
+    fidelity: Fidelity | None = None  # the character's, for the contact sheet
     processes: Processes = ALONE  # that train together; the first of them writes
 
     @property
@@ -139,8 +139,8 @@ def finish(distillation: Distillation, student: Student, recording: Recording, l
     sheet, figures = distillation.beside("_contact_sheet.png"), distillation.beside("_errors.md")
     _picture(sheet, avatar, recording, distillation.fidelity)
     write_bytes(figures, report.markdown(errors, teacher=distillation.teacher).encode())
-    told = report.as_json(errors, teacher=distillation.teacher, held_out=starts)
-    write_bytes(distillation.beside("_errors.json"), told.encode())
+    content = report.as_json(errors, teacher=distillation.teacher, held_out=starts)
+    write_bytes(distillation.beside("_errors.json"), content.encode())
     return Baked(errors, distillation.output, stored, distillation.teacher, sheet, figures)
 
 

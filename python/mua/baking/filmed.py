@@ -6,12 +6,12 @@ from functools import partial
 import torch
 
 from mua.baking.distillation import Baked, Distillation, distil_student, finish
-from mua.baking.filmed_motion import filmed_clips, plan_headings, put_on, taught_settings
+from mua.baking.filmed_motion import filmed_clips, filmed_settings, plan_headings, put_on
 from mua.baking.listener import Listener
 from mua.baking.plan import split
 from mua.baking.playback import choose
 from mua.baking.recorded import recorded, recording_key
-from mua.baking.report import TAUGHT
+from mua.baking.report import FILMED
 from mua.baking.settings import BakeSettings
 from mua.baking.teacher_stages import carry_out
 from mua.capture import open_capture
@@ -27,7 +27,7 @@ from mua.training.memory import release_memory
 from mua.training.processes import ALONE
 
 
-def bake_taught(settings: BakeSettings, device: torch.device, listener: Listener) -> Baked:
+def bake_trained_teacher(settings: BakeSettings, device: torch.device, listener: Listener) -> Baked:
     """Train a teacher first where the character is a capture; then record it, distil it and write the avatar."""
     require_writable(settings.output)
     folder = settings.work / "teacher" if settings.teacher is None else settings.teacher
@@ -46,10 +46,10 @@ def bake_taught(settings: BakeSettings, device: torch.device, listener: Listener
     distillation = Distillation(
         output=settings.output,
         work=settings.work,
-        settings=taught_settings(settings.student, recording.rig.texels.size),
+        settings=filmed_settings(settings.student, recording.rig.texels.size),
         device=device,
         name=description.name,
-        teacher=TAUGHT,
+        teacher=FILMED,
         clips=tuple(clips),
         playback=settings.clips,
         storage=settings.storage,

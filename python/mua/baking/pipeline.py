@@ -9,7 +9,7 @@ import torch
 from mua.atlas.texel_density import describe_texels
 from mua.baking.check import fidelity_of
 from mua.baking.distillation import Baked, Distillation, choose_device, distil_student, finish
-from mua.baking.filmed import bake_taught
+from mua.baking.filmed import bake_trained_teacher
 from mua.baking.listener import Listener
 from mua.baking.options import check_output
 from mua.baking.plan import plan, split
@@ -18,7 +18,7 @@ from mua.baking.ranges import clips_of, planned_range, settings_for
 from mua.baking.recorded import recorded, recording_key
 from mua.baking.report import STAND_IN
 from mua.baking.settings import BakeSettings
-from mua.baking.sources import ordered_character
+from mua.baking.sources import load_baked_character
 from mua.fidelity import report
 from mua.fidelity.compare import Fidelity
 from mua.files.lock import DirectoryLock
@@ -42,13 +42,13 @@ def bake(settings: BakeSettings, listener: Listener) -> Baked:
         listener.note(f"There is no directory {directory}; it is created.")
     with DirectoryLock(settings.work, name=f"--work {settings.work}"):
         if settings.teacher is not None or settings.training is not None:
-            return bake_taught(settings, device, listener)
+            return bake_trained_teacher(settings, device, listener)
         return _bake(settings, device, listener)
 
 
 def _bake(settings: BakeSettings, device: torch.device, listener: Listener) -> Baked:
     listener.stage("character")
-    character = ordered_character(settings)
+    character = load_baked_character(settings)
     clips, notes = clips_of(settings, character)
     for sentence in (*character.notes, describe_texels(character, settings.student.texels), *notes):
         listener.note(sentence)

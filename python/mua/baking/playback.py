@@ -68,8 +68,8 @@ def held_out(recorded: Sequence[RecordedClip]) -> dict[str, int]:
 
 def held_out_sentence(starts: dict[str, int]) -> str:
     """What was held out, for a person who reads it in the file."""
-    told = [name if start == 0 else f"{name} from frame {start}" for name, start in starts.items()]
-    return f"held out of training: {', '.join(told)}" if told else "no clip was held out of training"
+    clips = [name if start == 0 else f"{name} from frame {start}" for name, start in starts.items()]
+    return f"held out of training: {', '.join(clips)}" if clips else "no clip was held out of training"
 
 
 def typical_frame(

@@ -13,7 +13,7 @@ from mua.motion.planted_feet import Feet
 from mua.student.settings import Settings
 from mua.teachers.trained.settings import TeacherSettings
 
-ALL, NONE = "all", "none"  # of the clips
+ALL, NONE = "all", "none"  # clips to store for playback
 MotionRange = Literal["full", "none"]
 
 
@@ -38,7 +38,7 @@ class BakeSettings:
     storage: Storage = "f16"
     jobs: int = 1  # processes that record side by side
     teacher: Path | None = None  # that was trained on images; None: the simulated character
-    training: TeacherSettings | None = None  # of the teacher that is trained first, where the character is a capture
+    training: TeacherSettings | None = None  # sets the teacher that is trained first on a capture
     clips: tuple[str, ...] = (ALL,)  # which the file holds for playback: names, or "all", "none" or a number
 
     def beside(self, ending: str) -> Path:

@@ -19,7 +19,7 @@ from mua.rig.character import Character
 ATLAS = 1024  # texels of the base-colour atlas along a side
 
 
-def ordered_character(settings: BakeSettings) -> Character:
+def load_baked_character(settings: BakeSettings) -> Character:
     """The character of a bake or a check, with the layout and size that its settings ask for."""
     return load_character(
         settings.character,
@@ -62,9 +62,9 @@ def load_clips(
     mapping: Mapping[str, str] | None,
     feet: Feet = "auto",
 ) -> tuple[list[Clip], list[str]]:
-    """The clips of `motions` put on the character, or the character's own; and what is worth telling of them.
+    """The clips of `motions` put on the character, or the character's own; and notes on them.
 
-    Clips of one name are told apart by a number. Errors: InputError where there is no motion at all.
+    Clips of one name are numbered. Errors: InputError where there is no motion at all.
     """
     if not motions:
         if not character.clips:

@@ -88,7 +88,7 @@ class TrainTeacherSettings:
     output: Path
     teacher: TeacherSettings
     device: DeviceName
-    weights: Path | None  # of LPIPS
+    lpips_weights: Path | None
 
 
 def _read_settings(options: Mapping[str, Any]) -> TrainTeacherSettings:
@@ -124,7 +124,7 @@ def _train(settings: TrainTeacherSettings, processes: "Processes", listener: Lis
     output, device = settings.output, processes.place(choose_device(settings.device))
     if settings.teacher.rasteriser == "gsplat" and device.type != "cuda":
         raise InputError(f"--rasteriser gsplat: draws on NVIDIA GPUs only, and the device is {device.type}")
-    stages = partial(carry_out, settings.capture, output, settings.teacher, device, weights=settings.weights)
+    stages = partial(carry_out, settings.capture, output, settings.teacher, device, weights=settings.lpips_weights)
     if not processes.first:
         stages(Nobody(), processes)
         return

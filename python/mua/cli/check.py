@@ -80,12 +80,12 @@ def _motion_table(motions: tuple[MotionQuality, ...]) -> Table:
 
 def _joints(found: Check) -> str:
     """How many joints the motion moves, and the first of those that it leaves still; the mapping file has all."""
-    told = f"The motion moves {len(found.matched)} joints"
+    moved = f"The motion moves {len(found.matched)} joints"
     if not found.unmatched:
-        return f"{told}, all that have skin."
+        return f"{moved}, all that have skin."
     few = ", ".join(found.unmatched[:FEW])
     more = len(found.unmatched) - FEW
-    return f"{told}, and not {few}{f' and {more} others' if more > 0 else ''}; the mapping file names all."
+    return f"{moved}, and not {few}{f' and {more} others' if more > 0 else ''}; the mapping file names all."
 
 
 def _measured(value: float | None, shape: str) -> str:

@@ -35,7 +35,7 @@ def command_name() -> str:
 
 
 def with_common_options(command: Callable[..., None]) -> Callable[..., None]:
-    """The same command with --version and --quiet after its own options."""
+    """Add --version and --quiet after a command's own options."""
 
     @functools.wraps(command)
     def run(*, version: bool, quiet: bool, **given: Any) -> None:
@@ -96,7 +96,7 @@ def _described(argument: inspect.Parameter, option: Option, titles: Mapping[str,
 
 def lent_by(
     function: Callable[..., object],
-    kinds: Mapping[str, Any],  # of each argument that is an option: a terminal's type, with its help
+    kinds: Mapping[str, Any],  # by argument: the type that a terminal takes, with its help
 ) -> Callable[[Callable[..., None]], Callable[..., None]]:
     """Give a command the arguments of a function, by the names and defaults that they have there."""
     arguments = inspect.signature(function).parameters
