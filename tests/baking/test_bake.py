@@ -96,7 +96,7 @@ def test_without_the_range_the_same_is_recorded_of_the_users_motion(
     def stop(*_: object) -> None:
         raise Enough
 
-    monkeypatch.setattr("mua.baking.pipeline.teach", stop)
+    monkeypatch.setattr("mua.baking.pipeline.distil_student", stop)
     settings = BakeSettings(tmp_path / "a.muaavatar", tmp_path / "work", SMALL, "cpu", motion_range="none")
     with pytest.raises(Enough):
         bake(settings, Silent())

@@ -105,7 +105,7 @@ def run(
             make()
             late.recorded_with, late.planned = settings, tuple(planned)
 
-        def teach(distillation: Distillation, *_: object) -> None:
+        def distil_student(distillation: Distillation, *_: object) -> None:
             late.distillation, late.clips = distillation, distillation.clips or ()
             raise Reached
 
@@ -113,7 +113,7 @@ def run(
             monkeypatch.setattr(module, "fidelity_of", compared)
         monkeypatch.setattr(pipeline, "SimulatedTeacher", teacher)
         monkeypatch.setattr(pipeline, "recorded", recorded)
-        monkeypatch.setattr(pipeline, "teach", teach)
+        monkeypatch.setattr(pipeline, "distil_student", distil_student)
         shown = ("--check",) if "--check" in arguments else ()
         texels = () if "--texels" in arguments else ("--texels", "64")
         try:
