@@ -94,5 +94,5 @@ def test_poses_of_a_capture_are_recorded_at_one_rate_however_often_it_was_filmed
     monkeypatch.setattr(filmed_training, "plan_headings", lambda *_, **__: [PLANNED])
     surfaces = SimpleNamespace(skeleton=None)
     captures = [SimpleNamespace(clips=(), rate=rate, surfaces=surfaces) for rate in (25.0, 30.0, 25.0)]
-    made = {filmed_training._record(tmp_path, one, 9, tmp_path, Told()) for one in captures}  # type: ignore[arg-type]
+    made = {filmed_training._record(tmp_path, one, 9, tmp_path, Heard()) for one in captures}  # type: ignore[arg-type]
     assert (len(made), rates) == (1, [30.0, 30.0, 30.0])
