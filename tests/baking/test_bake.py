@@ -1,4 +1,4 @@
-"""The main job on a very small order, and every way in which bad input ends it."""
+"""A bake with very small settings, and every way in which bad input ends it."""
 
 import dataclasses
 import json
@@ -21,10 +21,10 @@ from synthetic_avatar import synthetic_avatar
 
 from mua.asset import read
 from mua.baking.distillation import Baked
-from mua.baking.order import Order
 from mua.baking.pipeline import bake, parts
 from mua.baking.plan import HeldOut, plan, split
 from mua.baking.recorded import recording_key
+from mua.baking.settings import BakeSettings
 from mua.baking.sources import load_character
 from mua.channels import ATTRIBUTES
 from mua.errors import InputError
@@ -39,8 +39,8 @@ from mua.rig.bounds import playback_bounds
 @pytest.fixture(scope="module")
 def baked(tmp_path_factory: pytest.TempPathFactory) -> Baked:
     directory = tmp_path_factory.mktemp("bake")
-    order = Order(directory / "a.muaavatar", directory / "work", SMALL, "cpu")
-    return bake(order, Silent())
+    settings = BakeSettings(directory / "a.muaavatar", directory / "work", SMALL, "cpu")
+    return bake(settings, Silent())
 
 
 def test_leaves_an_avatar_that_reads_back(baked: Baked) -> None:
@@ -96,15 +96,15 @@ def test_without_the_range_the_same_is_recorded_of_the_users_motion(
     def stop(*_: object) -> None:
         raise Enough
 
-    monkeypatch.setattr("mua.baking.pipeline.teach", stop)
-    order = Order(tmp_path / "a.muaavatar", tmp_path / "work", SMALL, "cpu", motion_range="none")
+    monkeypatch.setattr("mua.baking.pipeline.distil_student", stop)
+    settings = BakeSettings(tmp_path / "a.muaavatar", tmp_path / "work", SMALL, "cpu", motion_range="none")
     with pytest.raises(Enough):
-        bake(order, Silent())
+        bake(settings, Silent())
     one, other = recording_of(tmp_path), recording_of(baked.output.parent)
     character = load_character(None, uv="auto", seed=0)
     training, held = split([resample(clip, RATE) for clip in character.clips], ())
     planned = plan(training, held, frames=SMALL.frames)
-    assert one.directory.name == f"recording-{recording_key(parts(order, character), planned)}"
+    assert one.directory.name == f"recording-{recording_key(parts(settings, character), planned)}"
     assert one.count() == SMALL.frames
     for kind in (False, True):
         rows = range(one.count(kind))
@@ -120,8 +120,8 @@ def test_without_the_range_the_same_is_recorded_of_the_users_motion(
 def test_the_file_says_what_was_held_out(baked: Baked) -> None:
     walk = read(baked.output).clips[0]
     assert f"held out of training: walk from frame {len(walk) - len(walk) // 5}, turn" in read(baked.output).notes
-    told = json.loads(baked.output.with_name("a_errors.json").read_text())
-    assert told["held_out_from"]["walk"] == len(walk) - len(walk) // 5
+    figures = json.loads(baked.output.with_name("a_errors.json").read_text())
+    assert figures["held_out_from"]["walk"] == len(walk) - len(walk) // 5
 
 
 def test_leaves_a_contact_sheet_and_figures(baked: Baked) -> None:
@@ -129,8 +129,8 @@ def test_leaves_a_contact_sheet_and_figures(baked: Baked) -> None:
     assert baked.figures is not None
     with Image.open(baked.sheet) as sheet:
         assert np.asarray(sheet).std() > 0
-    told = json.loads(baked.output.with_name("a_errors.json").read_text())
-    assert set(told["groups"]["training"]["rms"]) == set(ATTRIBUTES)
+    figures = json.loads(baked.output.with_name("a_errors.json").read_text())
+    assert set(figures["groups"]["training"]["rms"]) == set(ATTRIBUTES)
     assert "explained" in baked.figures.read_text()
 
 
@@ -142,7 +142,7 @@ def test_baselines_stand_in_the_only_possible_order(baked: Baked) -> None:
 
 
 def test_one_worker_and_several_leave_the_same_bytes(baked: Baked, tmp_path: Path) -> None:
-    bake(Order(tmp_path / "a.muaavatar", tmp_path / "work", SMALL, "cpu", jobs=2), Silent())
+    bake(BakeSettings(tmp_path / "a.muaavatar", tmp_path / "work", SMALL, "cpu", jobs=2), Silent())
     (mine,), (theirs,) = (list(path.glob("recording-*")) for path in (tmp_path / "work", baked.output.parent / "work"))
     assert content(mine) == content(theirs)
     assert (tmp_path / "a.muaavatar").read_bytes() == baked.output.read_bytes()
@@ -164,7 +164,7 @@ def _other(owner: object, name: str) -> Any:
 
 
 def test_a_recording_of_another_surface_is_not_taken_for_this_one(tmp_path: Path) -> None:
-    order = Order(tmp_path / "a.muaavatar", tmp_path, SMALL, "cpu")
+    settings = BakeSettings(tmp_path / "a.muaavatar", tmp_path, SMALL, "cpu")
     character = load_character(None, uv="auto", seed=0)
     mesh, skeleton = character.mesh, character.skeleton
     others = [
@@ -179,14 +179,14 @@ def test_a_recording_of_another_surface_is_not_taken_for_this_one(tmp_path: Path
         *(dataclasses.replace(character, **{name: _other(character, name)}) for name in CHARACTER),
         dataclasses.replace(character, looseness=None),
     ]
-    orders = [
-        dataclasses.replace(order, settings=dataclasses.replace(SMALL, **{name: getattr(SMALL, name) + 32}))
+    other_settings = [
+        dataclasses.replace(settings, student=dataclasses.replace(SMALL, **{name: getattr(SMALL, name) + 32}))
         for name in ("texels", "seed")
     ]
-    keys = [recording_key(parts(order, one), []) for one in (character, character, *others)]
-    keys += [recording_key(parts(one, character), []) for one in orders]
+    keys = [recording_key(parts(settings, one), []) for one in (character, character, *others)]
+    keys += [recording_key(parts(one, character), []) for one in other_settings]
     assert keys[0] == keys[1]
-    assert len(set(keys)) == 1 + len(others) + len(orders)
+    assert len(set(keys)) == 1 + len(others) + len(other_settings)
 
 
 def test_a_recording_of_other_motion_is_not_taken_for_this_one() -> None:
@@ -314,7 +314,7 @@ def test_killed_bake_ends_in_the_same_bytes(baked: Baked, tmp_path: Path) -> Non
     """kill -9 while it records, then while it trains; the third run ends as an undisturbed one."""
     code = (
         "import sys; from pathlib import Path; sys.path.insert(0, sys.argv[1]); from test_bake import *;"
-        "d = Path(sys.argv[2]); bake(Order(d / 'a.muaavatar', d / 'work', SMALL, 'cpu'), Silent())"
+        "d = Path(sys.argv[2]); bake(BakeSettings(d / 'a.muaavatar', d / 'work', SMALL, 'cpu'), Silent())"
     )
     run = [sys.executable, "-c", code, str(Path(__file__).parent), str(tmp_path)]
     for sign in ("recording-*/reference.npz", "student/*"):

@@ -12,38 +12,51 @@ import pytest
 from commands import Commands, python
 
 import mua
-from mua.baking.options import check_inputs, check_jobs, check_output, check_settings
-from mua.cli import bake, train
+from mua.baking.bake import read_settings
+from mua.baking.options import check_inputs, check_output
+from mua.baking.settings import BakeSettings
+from mua.cli import bake, teach, train
 from mua.errors import InputError
 
 HEAVY = {"torch", "warp", "pxr"}
+
+
+def settings(**changed: Any) -> BakeSettings:
+    """The settings of a bake with some options changed."""
+    arguments = inspect.signature(mua.bake).parameters.values()
+    return read_settings({one.name: one.default for one in arguments} | changed)
 
 
 @pytest.mark.parametrize(
     ("options", "sentence"),
     [
         ({"texels": 100}, "--texels 100: expected a multiple of 16 from 32 on"),
-        ({"texels": 16}, "--texels 16: expected"),
+        ({"texels": 16}, "--texels 16: expected a multiple of 16 from 32 on"),
+        ({"texels": 64.0}, r"texels is 64\.0 \(float\); expected a whole number"),
         ({"frames": 0}, "--frames 0: expected at least 1"),
         ({"seed": -1}, "--seed -1: expected 0 or more"),
+        ({"jobs": 0}, "--jobs 0: expected at least 1"),
     ],
 )
-def test_a_number_that_no_bake_can_have_is_refused(options: dict[str, int], sentence: str) -> None:
-    given: dict[str, Any] = {"seed": 0, "frames": None, "texels": None} | options
+def test_rejects_a_number_out_of_range(options: dict[str, Any], sentence: str) -> None:
     with pytest.raises(InputError, match=sentence):
-        check_settings("tiny", "closed-form", **given)
+        settings(**options)
 
 
-def test_no_processes_are_refused_and_all_cores_the_default() -> None:
-    with pytest.raises(InputError, match="--jobs 0: expected at least 1"):
-        check_jobs(0)
-    assert check_jobs(3) == 3
-    assert check_jobs(None) >= 1
+def test_rejects_a_teacher_option_out_of_range(command: Commands, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"--refine 10\.5: expected 0 to 10 degrees"):
+        mua.teach(tmp_path, refine=10.5)
+    assert command("teach", tmp_path, "--steps", 0).sentence == "error: --steps 0: expected at least 1"
+
+
+def test_one_process_per_core_records_by_default() -> None:
+    assert settings(jobs=3).jobs == 3
+    assert settings().jobs >= 1
 
 
 def test_numbers_override_the_preset() -> None:
-    settings = check_settings("tiny", "closed-form", seed=3, frames=7, texels=64)
-    assert (settings.seed, settings.frames, settings.texels) == (3, 7, 64)
+    student = settings(preset="tiny", seed=3, frames=7, texels=64).student
+    assert (student.seed, student.frames, student.texels) == (3, 7, 64)
 
 
 def test_files_that_are_not_there_are_named(tmp_path: Path) -> None:
@@ -66,7 +79,7 @@ def test_a_file_in_the_place_of_the_work_directory_is_refused(tmp_path: Path) ->
         check_output(tmp_path / "a.muaavatar", tmp_path / "work")
 
 
-def test_directories_to_make_are_told_once(tmp_path: Path) -> None:
+def test_directories_to_make_are_listed_once(tmp_path: Path) -> None:
     new = tmp_path / "new"
     assert check_output(new / "more" / "a.muaavatar", new / "work") == [new]
     assert check_output(tmp_path / "a.muaavatar", tmp_path / "work") == []
@@ -123,8 +136,11 @@ def test_a_work_directory_that_exists_is_asked_itself(
         check_output(tmp_path / "a.muaavatar", volume / "work")
 
 
-@pytest.mark.parametrize(("function", "command"), [(mua.bake, bake), (mua.train, train)], ids=["bake", "train"])
+@pytest.mark.parametrize(
+    ("function", "command"), [(mua.bake, bake), (mua.train, train), (mua.teach, teach)], ids=["bake", "train", "teach"]
+)
 def test_every_argument_of_the_function_is_an_option_of_the_command(
     function: Callable[..., object], command: ModuleType
 ) -> None:
-    assert set(command.OPTIONS) == set(inspect.signature(function).parameters) - {"listener"}
+    options = set(inspect.signature(command.main).parameters) - {"check", "json"}
+    assert options == set(inspect.signature(function).parameters) - {"listener"}

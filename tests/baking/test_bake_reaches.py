@@ -19,7 +19,7 @@ from reached_options import FIGURE, MAPPED, REACHES, WALK, Late
 from mua.atlas import packing
 from mua.baking import check, pipeline
 from mua.baking.distillation import Distillation
-from mua.baking.order import Order
+from mua.baking.settings import BakeSettings
 from mua.export.bvh import bvh_text
 from mua.pose.clip import Clip
 from mua.recording import PlannedClip
@@ -99,11 +99,13 @@ def run(
         def teacher(character: Character, *, texels: int, seed: int = -1) -> None:
             late.character, late.texels, late.seed = character, texels, seed
 
-        def recorded(make: Callable[[], None], _: str, order: Order, planned: list[PlannedClip], __: object) -> None:
+        def recorded(
+            make: Callable[[], None], _: str, settings: BakeSettings, planned: list[PlannedClip], __: object
+        ) -> None:
             make()
-            late.order, late.planned = order, tuple(planned)
+            late.recorded_with, late.planned = settings, tuple(planned)
 
-        def teach(distillation: Distillation, *_: object) -> None:
+        def distil_student(distillation: Distillation, *_: object) -> None:
             late.distillation, late.clips = distillation, distillation.clips or ()
             raise Reached
 
@@ -111,7 +113,7 @@ def run(
             monkeypatch.setattr(module, "fidelity_of", compared)
         monkeypatch.setattr(pipeline, "SimulatedTeacher", teacher)
         monkeypatch.setattr(pipeline, "recorded", recorded)
-        monkeypatch.setattr(pipeline, "teach", teach)
+        monkeypatch.setattr(pipeline, "distil_student", distil_student)
         shown = ("--check",) if "--check" in arguments else ()
         texels = () if "--texels" in arguments else ("--texels", "64")
         try:
@@ -156,9 +158,9 @@ def test_the_seed_is_that_of_teacher_and_student(run: Callable[..., Late]) -> No
 
 
 def test_the_recording_lies_in_the_work_directory(run: Callable[..., Late]) -> None:
-    order = run(*FIGURE, "--work", "there").order
-    assert order
-    assert order.work == Path("there")
+    settings = run(*FIGURE, "--work", "there").recorded_with
+    assert settings
+    assert settings.work == Path("there")
 
 
 def test_a_check_writes_its_figures_beside_what_was_asked_for(

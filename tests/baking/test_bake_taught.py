@@ -1,4 +1,4 @@
-"""mua-bake of a taught teacher, and of a capture."""
+"""mua-bake of a trained teacher, and of a capture."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -37,7 +37,7 @@ def test_a_capture_becomes_an_avatar_and_so_does_its_teacher(capture: Path, tmp_
     motion = capture / "walk.bvh"
     whole = command("bake", capture, "--motion", motion, "-o", tmp_path / "whole.muaavatar", *given)
     assert whole.status in FINISHED, whole
-    assert "taught from the images of a capture" in whole.out
+    assert "trained on the images of a capture" in whole.out
     avatar = mua.load(tmp_path / "whole.muaavatar")
     assert avatar.name == "figure"
     assert {clip.name for clip in avatar.clips} == {"walk", "reach", "walk 2"}

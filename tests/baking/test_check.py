@@ -16,8 +16,8 @@ from typer.testing import CliRunner
 
 from mua.baking.check import Check
 from mua.baking.contact_sheet import CELL
-from mua.baking.order import Order
 from mua.baking.pipeline import bake
+from mua.baking.settings import BakeSettings
 from mua.characters.read import read_surfaces
 from mua.cli.bake import main
 from mua.cli.check import show
@@ -47,15 +47,15 @@ def test_leaves_a_picture_a_mapping_and_figures_and_no_avatar(tmp_path: Path) ->
     with Image.open(output.parent / "a_check.png") as picture:
         assert np.asarray(picture).std() > 0
     assert read_mapping(output.parent / "a_mapping.json") == {name: name for name in ("hips", "spine", "head")}
-    told = json.loads(figures.read_text())
-    assert 0.9 < told["fidelity"]["iou"] < 1
-    assert told["fidelity"]["psnr"] > 30
-    assert [motion["name"] for motion in told["motion"]] == ["bend"]
-    assert told["motion"][0]["limb_degrees"] == pytest.approx(0, abs=1e-3)
-    assert {"facing_degrees", "feet_height", "slide"} <= told["motion"][0].keys()
-    assert [pair["target"] for pair in told["matched"]] == ["hips", "spine", "head"]
-    assert told["unmatched"] == []
-    assert told["warnings"] == [sentence for sentence in told["warnings"] if sentence in text]
+    content = json.loads(figures.read_text())
+    assert 0.9 < content["fidelity"]["iou"] < 1
+    assert content["fidelity"]["psnr"] > 30
+    assert [motion["name"] for motion in content["motion"]] == ["bend"]
+    assert content["motion"][0]["limb_degrees"] == pytest.approx(0, abs=1e-3)
+    assert {"facing_degrees", "feet_height", "slide"} <= content["motion"][0].keys()
+    assert [pair["target"] for pair in content["matched"]] == ["hips", "spine", "head"]
+    assert content["unmatched"] == []
+    assert content["warnings"] == [sentence for sentence in content["warnings"] if sentence in text]
     assert "bend, frame 15" in text
     assert text.splitlines()[-1] == str(figures)
 
@@ -96,15 +96,15 @@ def test_the_procedural_character_is_checked_without_a_picture(tmp_path: Path) -
 
 
 def test_a_bake_tells_the_fidelity_and_its_contact_sheet_begins_with_it(tmp_path: Path) -> None:
-    told: list[str] = []
+    notes: list[str] = []
 
     class Hearing(Silent):
         def note(self, sentence: str) -> None:
-            told.append(sentence)
+            notes.append(sentence)
 
-    order = Order(tmp_path / "a.muaavatar", tmp_path / "work", SMALL, "cpu", character=column_file(tmp_path))
-    baked = bake(order, Hearing())
-    assert any(sentence.startswith("Splats compared with the source: silhouettes overlap by") for sentence in told)
+    settings = BakeSettings(tmp_path / "a.muaavatar", tmp_path / "work", SMALL, "cpu", character=column_file(tmp_path))
+    baked = bake(settings, Hearing())
+    assert any(sentence.startswith("Splats compared with the source: silhouettes overlap by") for sentence in notes)
     assert baked.sheet is not None
     with Image.open(baked.sheet) as sheet:
         strip = CELL[1] + CAPTION

@@ -15,8 +15,8 @@ from mua import rotation
 from mua.asset.avatar import Avatar
 from mua.avatar.decode import Splats
 from mua.baking.evaluate import TRAINING, Errors
-from mua.baking.order import Order
 from mua.baking.pipeline import Baked, bake
+from mua.baking.settings import BakeSettings
 from mua.evaluation.entries import avatar_entries
 from mua.evaluation.images import Studio
 from mua.evaluation.scores import choose_frames, score
@@ -49,7 +49,7 @@ LOST = 0.03  # of what the best coefficients would explain, by the MLPs' own on 
 
 def test_student_explains_its_teacher_and_looks_like_it(tmp_path: Path, device: Device) -> None:
     """As `mua-bake --preset tiny` does, with all of its frames. One test, since workers bake each for themselves."""
-    baked = bake(Order(tmp_path / "a.muaavatar", tmp_path / "work", preset("tiny"), "cpu", jobs=2), Silent())
+    baked = bake(BakeSettings(tmp_path / "a.muaavatar", tmp_path / "work", preset("tiny"), "cpu", jobs=2), Silent())
     errors = dict(baked.errors)
     assert not missed_on_unseen_motion(errors)
     assert not missed_by_a_stage(errors[TRAINING])

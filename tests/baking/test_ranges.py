@@ -10,16 +10,16 @@ from silent import Silent
 from small_bakes import SMALL
 
 from mua.asset import read
-from mua.baking.order import MotionRange, Order
 from mua.baking.pipeline import bake
 from mua.baking.ranges import clips_of, planned_range, range_frames, settings_for
+from mua.baking.settings import BakeSettings, MotionRange
 from mua.errors import InputError
 from mua.pose.clip import Clip, is_range
 
 
-def order(directory: Path, *, frames: int = 240, motion_range: MotionRange = "full") -> Order:
-    settings = replace(SMALL, frames=frames)
-    return Order(directory / "a.muaavatar", directory / "work", settings, "cpu", motion_range=motion_range)
+def bake_settings(directory: Path, *, frames: int = 240, motion_range: MotionRange = "full") -> BakeSettings:
+    student = replace(SMALL, frames=frames)
+    return BakeSettings(directory / "a.muaavatar", directory / "work", student, "cpu", motion_range=motion_range)
 
 
 @pytest.mark.parametrize(
@@ -40,7 +40,7 @@ def test_a_quarter_is_added_and_more_where_the_motion_is_short(asked: int, own: 
 
 
 def test_frames_are_recorded_of_all_clips_of_the_range_and_none_kept_whole(tmp_path: Path) -> None:
-    planned = planned_range(order(tmp_path), character(RIGS["T-pose"]), (), 240)
+    planned = planned_range(bake_settings(tmp_path), character(RIGS["T-pose"]), (), 240)
     assert len(planned) == 6
     assert sum(len(clip.wanted) for clip in planned) == 60
     assert all(len(clip.wanted) > 3 and not clip.whole and not clip.held_out for clip in planned)
@@ -48,41 +48,41 @@ def test_frames_are_recorded_of_all_clips_of_the_range_and_none_kept_whole(tmp_p
 
 
 def test_nothing_is_recorded_of_a_range_that_is_not_asked_for(tmp_path: Path) -> None:
-    assert planned_range(order(tmp_path, motion_range="none"), character(RIGS["T-pose"]), (), 240) == []
+    assert planned_range(bake_settings(tmp_path, motion_range="none"), character(RIGS["T-pose"]), (), 240) == []
 
 
 def test_a_person_without_animation_has_the_range_as_its_motion(tmp_path: Path) -> None:
     figure = character(RIGS["T-pose"])
-    clips, (note,) = clips_of(order(tmp_path), figure)
+    clips, (note,) = clips_of(bake_settings(tmp_path), figure)
     assert len(clips) == len({clip.name for clip in clips}) > 5
     assert sum(map(len, clips)) > 2 * 240
     assert "holds no animation; its motion is a built-in range of motion" in note
-    assert planned_range(order(tmp_path), figure, clips, 240) == []
+    assert planned_range(bake_settings(tmp_path), figure, clips, 240) == []
     with pytest.raises(InputError, match="rig: holds no animation; give a file or directory with --motion"):
-        clips_of(order(tmp_path, motion_range="none"), figure)
+        clips_of(bake_settings(tmp_path, motion_range="none"), figure)
 
 
 def test_only_motion_of_a_user_is_followed_closely(tmp_path: Path) -> None:
     figure, still = character(RIGS["T-pose"]), RIGS["T-pose"]
-    assert not settings_for(order(tmp_path), figure).generalisation.own
+    assert not settings_for(bake_settings(tmp_path), figure).generalisation.own
     own = Clip("own", 30.0, still.bind_rotations[None], still.bind_translations[None])
-    asked = order(tmp_path)
-    assert settings_for(asked, replace(figure, clips=(own,))) == asked.settings
+    asked = bake_settings(tmp_path)
+    assert settings_for(asked, replace(figure, clips=(own,))) == asked.student
     moved = replace(asked, motions=(tmp_path / "walk.bvh",))
-    assert settings_for(moved, figure) == moved.settings
+    assert settings_for(moved, figure) == moved.student
 
 
 def test_a_character_with_animation_keeps_to_it(tmp_path: Path) -> None:
     skeleton = RIGS["T-pose"]
     own = Clip("own", 30.0, skeleton.bind_rotations[None], skeleton.bind_translations[None])
-    clips, notes = clips_of(order(tmp_path), replace(character(skeleton), clips=(own,)))
+    clips, notes = clips_of(bake_settings(tmp_path), replace(character(skeleton), clips=(own,)))
     assert ([clip.name for clip in clips], notes) == (["own"], [])
 
 
 def test_a_file_without_animation_is_baked_and_played(tmp_path: Path) -> None:
-    asked = order(tmp_path, frames=12)
-    settings = replace(asked.settings, texels=32)
-    baked = bake(replace(asked, settings=settings, character=column_file(tmp_path, clip=False)), Silent())
+    asked = bake_settings(tmp_path, frames=12)
+    student = replace(asked.student, texels=32)
+    baked = bake(replace(asked, student=student, character=column_file(tmp_path, clip=False)), Silent())
     clips = read(baked.output).clips
     assert clips
     assert not any(is_range(clip.name) or len(clip) <= 10 for clip in clips)

@@ -7,16 +7,16 @@ from shared_data import SharedData
 from silent import Silent
 
 from mua.baking.evaluate import TRAINING
-from mua.baking.order import Order
 from mua.baking.pipeline import bake
+from mua.baking.settings import BakeSettings
 from mua.student.settings import preset
 
 LEAST_TRAINING = 0.80  # share of the variance about the mean texture
 LEAST_HELD_OUT = 0.50  # on a walk, when walks are trained on
 
 
-def order(shared_data: SharedData, directory: Path) -> Order:
-    return Order(
+def bake_settings(shared_data: SharedData, directory: Path) -> BakeSettings:
+    return BakeSettings(
         directory / "white.muaavatar",
         directory / "work",
         preset("preview"),
@@ -29,7 +29,7 @@ def order(shared_data: SharedData, directory: Path) -> Order:
 
 @pytest.mark.long
 def test_student_explains_a_clothed_woman(shared_data: SharedData, tmp_path: Path) -> None:
-    errors = bake(order(shared_data, tmp_path), Silent()).errors
+    errors = bake(bake_settings(shared_data, tmp_path), Silent()).errors
     for attribute in ("offset", "rotation", "SH"):
         assert errors[TRAINING].explained(attribute) >= LEAST_TRAINING
         assert errors["02_02"].explained(attribute) >= LEAST_HELD_OUT

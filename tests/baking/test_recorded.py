@@ -1,4 +1,4 @@
-"""A bake's recording: by as many processes as asked for, told of frame by frame, and another where anything differs."""
+"""A bake's recording: by as many processes as asked for, reported by frame, and another where anything differs."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -11,8 +11,8 @@ import pytest
 from synthetic_avatar import synthetic_avatar
 
 from mua.baking import recorded as recordings
-from mua.baking.order import Order
 from mua.baking.recorded import recorded, recording_key
+from mua.baking.settings import BakeSettings
 from mua.pose.clip import Stretches
 from mua.recording import PlannedClip
 from mua.student.settings import preset
@@ -22,7 +22,7 @@ CLIP = synthetic_avatar().clips[0]
 PLANNED = PlannedClip(CLIP, held_out=False, wanted=frozenset({0, 2, 3}), whole=None)
 
 
-class Told:
+class Heard:
     """What a listener hears."""
 
     def __init__(self) -> None:
@@ -51,12 +51,12 @@ def test_it_is_made_by_as_many_processes_as_asked_for_and_told_by_frames(
 
     monkeypatch.setattr(recordings, "record_by_workers", by_workers)
     monkeypatch.setattr(recordings, "Recording", lambda directory: directory)
-    order = Order(tmp_path / "a.muaavatar", tmp_path / "work", preset("tiny"), jobs=3)
-    told = Told()
-    made = recorded(lambda: None, "key", order, [PLANNED, PLANNED], told)  # type: ignore[arg-type, return-value]
+    settings = BakeSettings(tmp_path / "a.muaavatar", tmp_path / "work", preset("tiny"), jobs=3)
+    listener = Heard()
+    made = recorded(lambda: None, "key", settings, [PLANNED, PLANNED], listener)  # type: ignore[arg-type, return-value]
     assert made == asked["directory"] == tmp_path / "work" / "recording-key"
     assert asked["jobs"] == 3
-    assert told.heard == [("recording",), (4, 6, "3 at work")]
+    assert listener.heard == [("recording",), (4, 6, "3 at work")]
 
 
 OTHERS: dict[str, PlannedClip] = {
@@ -94,5 +94,5 @@ def test_poses_of_a_capture_are_recorded_at_one_rate_however_often_it_was_filmed
     monkeypatch.setattr(filmed_training, "plan_headings", lambda *_, **__: [PLANNED])
     surfaces = SimpleNamespace(skeleton=None)
     captures = [SimpleNamespace(clips=(), rate=rate, surfaces=surfaces) for rate in (25.0, 30.0, 25.0)]
-    made = {filmed_training._record(tmp_path, one, 9, tmp_path, Told()) for one in captures}  # type: ignore[arg-type]
+    made = {filmed_training._record(tmp_path, one, 9, tmp_path, Heard()) for one in captures}  # type: ignore[arg-type]
     assert (len(made), rates) == (1, [30.0, 30.0, 30.0])

@@ -40,7 +40,7 @@ def recorded(
 
 
 def doubts(recording: Recording) -> list[str]:
-    """What may be meant so, which is told and refuses nothing."""
+    """A warning about what may be intended; nothing is refused."""
     findings = check(recording).findings
     assert not any(finding.certain for finding in findings)
     return [finding.sentence for finding in findings]
@@ -50,14 +50,14 @@ def test_says_what_is_there_and_leaves_a_picture_of_three_frames_and_nothing_els
     tmp_path: Path, mua_train: Training
 ) -> None:
     recorded(tmp_path / "recording")
-    told = mua_train(tmp_path / "recording", "--check").out
+    printed = mua_train(tmp_path / "recording", "--check").out
     for part in (
         *("wave", "again", "1.78 m high", "9 joints, the root is Hips", "792 vertices"),
         "25 at 30 per second (0.8 s); 3 recorded to train on, 1 held out, 4 of them whole",
         "0.98 (0.98 to 0.98)",
         "no mistake in units or conventions was found",
     ):
-        assert part in told
+        assert part in printed
     assert {path.name for path in tmp_path.iterdir()} == {"recording", "a_check.png"}
     picture = np.asarray(Image.open(tmp_path / "a_check.png"))
     assert picture.shape == (CELL[1] + CAPTION, 3 * CELL[0], 3)
@@ -92,9 +92,9 @@ def test_without_whole_frames_there_is_no_picture(tmp_path: Path, mua_train: Tra
     with TeacherWriter(tmp_path / "recording", RIG, rate=30) as writer:
         writer.start_clip("wave")
         writer.add(WAVE[0], *EXAMPLE.teacher(RIG, WAVE[0]), whole=False)
-    told = mua_train(tmp_path / "recording", "--check").out
-    assert "no frame is kept whole" in told
-    assert "no clip is held out" in told
+    printed = mua_train(tmp_path / "recording", "--check").out
+    assert "no frame is kept whole" in printed
+    assert "no clip is held out" in printed
     assert {path.name for path in tmp_path.iterdir()} == {"recording"}
 
 

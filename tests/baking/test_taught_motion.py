@@ -1,4 +1,4 @@
-"""What a teacher that was taught from a capture is recorded on: clips at several headings, by shares."""
+"""What a teacher trained on a capture is recorded on: clips at several headings, by shares."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,7 @@ from captures import motions
 from synthetic_avatar import synthetic_avatar
 
 from mua import rotation
-from mua.baking.filmed_motion import HEADINGS, UP, plan_headings, taught_settings, turned
+from mua.baking.filmed_motion import HEADINGS, UP, filmed_settings, plan_headings, turned
 from mua.baking.plan import HeldOut
 from mua.pose.clip import Clip
 from mua.recording import PlannedClip
@@ -65,6 +65,6 @@ def long(clip: Clip, frames: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def test_the_students_descriptor_keeps_the_heading() -> None:
-    settings = taught_settings(preset("tiny"), 128)
+    settings = filmed_settings(preset("tiny"), 128)
     assert settings.texels == 128
     assert not settings.generalisation.remove_heading

@@ -19,7 +19,7 @@ from PIL import Image
 from taught import FEW
 
 import mua
-from mua.baking import teacher_stages as lessons
+from mua.baking import teacher_stages
 from mua.capture import open_capture
 from mua.capture.outline import posed_template
 from mua.capture.write import write_capture
@@ -45,7 +45,7 @@ def capture(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def made(capture: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A teacher of a few steps; tests leave it as it is."""
-    folder = tmp_path_factory.mktemp("taught") / "teacher"
+    folder = tmp_path_factory.mktemp("trained") / "teacher"
     with pytest.MonkeyPatch.context() as patch:
         patch.setitem(settings.PRESETS, "tiny", FEW)
         return mua.teach(capture, output=folder, steps=3, texels=TEXELS)
@@ -65,7 +65,7 @@ def test_it_leaves_a_teacher_and_pictures_of_its_progress(made: Path) -> None:
 
 def test_a_drivable_template_follows_the_motion(capture: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     few = Schedule(steps=2, batch=1, lr=1e-2)
-    monkeypatch.setattr(lessons, "TEMPLATE", replace(TemplateSettings(), nodes=few, offsets=few))
+    monkeypatch.setattr(teacher_stages, "TEMPLATE", replace(TemplateSettings(), nodes=few, offsets=few))
     monkeypatch.setitem(settings.PRESETS, "tiny", FEW)
     teacher = TrainedTeacher(mua.teach(capture, output=tmp_path / "teacher", steps=1, texels=TEXELS, drivable=True))
     clip = open_capture(capture).motion("walk")
@@ -86,7 +86,7 @@ def test_tracks_of_a_capture_are_trained_on(capture: Path, tmp_path: Path, monke
     points = posed_template(given.surfaces, given.motion("walk"))[:, ::20] + [0.05, 0, 0]
     np.savez(tmp_path / "walk.npz", points=points, bind=bind)
     few, none = Schedule(steps=30, batch=1, lr=5e-2), TemplateWeights(silhouette=0.0)
-    monkeypatch.setattr(lessons, "TEMPLATE", replace(TemplateSettings(), nodes=few, offsets=few, weights=none))
+    monkeypatch.setattr(teacher_stages, "TEMPLATE", replace(TemplateSettings(), nodes=few, offsets=few, weights=none))
     monkeypatch.setitem(settings.PRESETS, "tiny", FEW)
     teacher = TrainedTeacher(mua.teach(tmp_path, output=tmp_path / "t", steps=1, texels=TEXELS, drivable=True))
     (frame,) = (one for one in teacher.frames(given.motion("walk"), {2}) if isinstance(one, TeacherFrame))

@@ -21,7 +21,7 @@ from torch import Tensor
 
 import mua
 from mua.atlas.uv import build_atlas
-from mua.baking import teacher_stages as lessons
+from mua.baking import teacher_stages
 from mua.capture import open_capture
 from mua.capture.outline import pixels, posed_template
 from mua.capture.write import write_capture
@@ -67,7 +67,7 @@ def quick(monkeypatch: pytest.MonkeyPatch) -> None:
 def small(patch: pytest.MonkeyPatch) -> None:
     few = Schedule(steps=2, batch=1, lr=1e-2)
     patch.setattr("mua.capture.capture.build_atlas", lambda surfaces, **_: atlas())
-    patch.setattr(lessons, "TEMPLATE", replace(TemplateSettings(), nodes=few, offsets=few))
+    patch.setattr(teacher_stages, "TEMPLATE", replace(TemplateSettings(), nodes=few, offsets=few))
     patch.setattr(perceptual, "Lpips", Distance)
     patch.setitem(settings.PRESETS, "tiny", FEW)
     patch.setitem(settings.PRESETS, "small", replace(FEW, channels=5))
@@ -126,7 +126,7 @@ def again(made: Path, capture: Path, folder: Path, **changed: Any) -> Path:
 def test_what_is_the_same_goes_on_with_what_was_trained(
     made: Path, capture: Path, lpips: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Weights of the same content lie anywhere; nothing is drawn to learn from."""
+    """Weights of the same content lie anywhere; nothing is drawn to train on."""
     (tmp_path / "same.pth").write_bytes(lpips.read_bytes())
     monkeypatch.setattr(ImageLoss, "forward", None)
     assert trained(again(made, capture, tmp_path / "t", lpips_weights=tmp_path / "same.pth")) == trained(made)
@@ -192,8 +192,8 @@ def test_a_teacher_says_what_it_was_trained_with(capture: Path, lpips: Path, tmp
     assert ended.status == 0, ended
     assert "no perceptual term" not in ended.out
     said = json.loads((tmp_path / "t" / "teacher.json").read_text())["settings"]
-    told = {name: said[name] for name in ("channels", "texels", "drivable", "colour_correction", "refine", "seed")}
-    assert told == {
+    recorded = {name: said[name] for name in ("channels", "texels", "drivable", "colour_correction", "refine", "seed")}
+    assert recorded == {
         **{"channels": 5, "texels": 80, "drivable": True, "colour_correction": False, "refine": 1.5, "seed": 3}
     }
     assert (said["mean"]["steps"], said["texture"]["steps"]) == (FEW.mean.steps, 1)
@@ -212,7 +212,7 @@ def test_a_gpu_that_is_not_there_is_named(
 def test_poses_of_held_out_clips_change_nothing_in_a_teacher(
     made: Path, capture: Path, lpips: Path, tmp_path: Path
 ) -> None:
-    """Neither what it reads of a pose nor what it has learnt: arms that only a held-out clip moves are not read."""
+    """Neither what it reads of a pose nor its weights: arms that only a held-out clip moves are not read."""
     shutil.copytree(capture, tmp_path / "capture")
     given = open_capture(tmp_path / "capture")
     held = given.whole_motion("reach")

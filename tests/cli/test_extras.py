@@ -139,15 +139,15 @@ def test_a_missing_extra_is_told_with_the_command_that_brings_it(
     given["share"] = (avatar_file, "-o", "shared")
     code = f"sys.argv[0] = 'mua-{name}'\nfrom mua.cli.{name} import run\nrun()"
     ended = run_bare(code, *given.get(name, (avatar_file,)))
-    told = re.fullmatch(
+    matched = re.fullmatch(
         r"error: mua-(\w+) needs the Python package (\w+), which is not here: "
         rf'{re.escape(sys.executable)} -m pip install -e "{PACKAGE.parent}\[(\w+)\]"\n',
         f"{ended.sentence}\n",
     )
-    assert told, ended
+    assert matched, ended
     assert ended.out == ""
-    assert (told[1], told[3]) == (name, OF_COMMAND.get(f"mua-{name}", name))
-    assert told[2] in EXTRAS[told[3]]
+    assert (matched[1], matched[3]) == (name, OF_COMMAND.get(f"mua-{name}", name))
+    assert matched[2] in EXTRAS[matched[3]]
 
 
 @pytest.mark.parametrize(

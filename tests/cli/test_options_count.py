@@ -1,7 +1,7 @@
 """No option of a command is read and ignored: each alone changes what is carried out.
 
 For every option of every command, option_tests.py names the test that fails where it is dropped on its way; those of
-mua-bake, mua-train and mua-teach also change the order that the later stages are given.
+mua-bake, mua-train and mua-teach also change the settings that the later stages are given.
 """
 
 import importlib
@@ -17,7 +17,7 @@ from captures import ring
 from option_tests import HELD
 
 import mua
-from mua.baking.options import read_order
+from mua.baking.bake import read_settings
 from mua.capture import Capture, CaptureClip, write_capture
 
 BAKE: dict[str, Any] = {
@@ -76,7 +76,7 @@ def defaults(function: Callable[..., Any]) -> dict[str, Any]:
 
 
 def changed(one: Any, other: Any) -> set[str]:
-    """The fields in which two orders differ."""
+    """The fields in which two settings differ."""
     return {field.name for field in fields(one) if getattr(one, field.name) != getattr(other, field.name)}
 
 
@@ -107,38 +107,40 @@ def test_every_option_of_a_bake_has_a_case() -> None:
 
 
 @pytest.mark.parametrize("option", BAKE)
-def test_an_option_of_a_bake_changes_its_order(option: str) -> None:
+def test_an_option_of_a_bake_changes_its_settings(option: str) -> None:
     given = defaults(mua.bake) | ({"motion": ["walk.bvh"]} if option == "mapping" else {})
-    found = changed(read_order(given), read_order(given | {option: BAKE[option]}))
+    found = changed(read_settings(given), read_settings(given | {option: BAKE[option]}))
     assert found - {"work"} if option == "output" else len(found) == 1
 
 
 @pytest.mark.parametrize("option", TRAIN)
-def test_an_option_of_a_training_changes_its_order(option: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    orders: list[Any] = []
+def test_an_option_of_a_training_changes_its_settings(option: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    found: list[Any] = []
     monkeypatch.setattr(
-        importlib.import_module("mua.baking.distil"), "_distil", lambda _, order, __: orders.append(order)
+        importlib.import_module("mua.baking.distil"), "_distil", lambda _, settings, __: found.append(settings)
     )
     recording: Any = object()
     for options in ({}, {option: TRAIN[option]}):
         mua.train(recording, **options)
     assert set(TRAIN) == set(defaults(mua.train))
-    found = changed(*orders)
-    assert found - {"work"} if option == "output" else len(found) == 1
+    fields = changed(*found)
+    assert fields - {"work"} if option == "output" else len(fields) == 1
 
 
 @pytest.mark.parametrize("option", TEACH)
-def test_an_option_of_a_lesson_changes_its_order(option: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_an_option_of_a_teacher_changes_its_settings(
+    option: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
     cameras, clip = tuple(ring()), CaptureClip("walk", tmp_path / "walk.bvh", 0, 2)
     write_capture(
         Capture(tmp_path / "capture", "figure", 30.0, tmp_path / "figure.glb", cameras, (clip,), "{camera}/{frame}.png")
     )
-    orders: list[Any] = []
+    found: list[Any] = []
     monkeypatch.setattr(
-        importlib.import_module("mua.baking.train_teacher"), "_teach", lambda order, *_: orders.append(order)
+        importlib.import_module("mua.baking.train_teacher"), "_train", lambda settings, *_: found.append(settings)
     )
     monkeypatch.setattr("mua.baking.train_teacher.find_spec", bool)  # gsplat is not among what tests install
     for options in ({}, {option: TEACH[option]}):
         mua.teach(tmp_path / "capture", **options)
     assert set(TEACH) == set(defaults(mua.teach))
-    assert len(changed(*orders)) == 1
+    assert len(changed(*found)) == 1

@@ -19,12 +19,12 @@ from pathlib import Path
 sys.path.insert(0, sys.argv[1])
 from small_bakes import SMALL
 from silent import Silent
-from mua.baking.order import Order
+from mua.baking.settings import BakeSettings
 from mua.baking.pipeline import bake
 from mua.errors import InputError
-order = Order(Path(sys.argv[2]), Path(sys.argv[3]), SMALL, "cpu", jobs=2)
+settings = BakeSettings(Path(sys.argv[2]), Path(sys.argv[3]), SMALL, "cpu", jobs=2)
 try:
-    bake(order, Silent())
+    bake(settings, Silent())
 except InputError as error:
     sys.exit(str(error))
 """
@@ -38,7 +38,7 @@ class Pair:
 
     directory: Path
     statuses: tuple[int, int]
-    told: tuple[str, str]  # what each wrote to standard error
+    errors: tuple[str, str]  # what each wrote to standard error
 
 
 def pairs(directory: Path, command: Callable[[Path, int], list[str]]) -> Iterator[Pair]:
@@ -53,15 +53,15 @@ def pairs(directory: Path, command: Callable[[Path, int], list[str]]) -> Iterato
             both.append(
                 subprocess.Popen(command(own, which), stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)
             )
-        told = tuple(one.communicate()[1] for one in both)
+        errors = tuple(one.communicate()[1] for one in both)
         seconds = max(seconds, time.monotonic() - started)
-        yield Pair(own, (both[0].returncode, both[1].returncode), (told[0], told[1]))
+        yield Pair(own, (both[0].returncode, both[1].returncode), (errors[0], errors[1]))
 
 
 def one_ends_and_the_other_is_refused_or_ends(pair: Pair) -> bool:
-    """Whoever comes second either waits for nothing, where the first has ended, or is told who is at work."""
+    """Whoever comes second either waits for nothing, where the first has ended, or is refused with who is at work."""
     ends = [
-        status == 0 or (status == 1 and BUSY in told) for status, told in zip(pair.statuses, pair.told, strict=True)
+        status == 0 or (status == 1 and BUSY in error) for status, error in zip(pair.statuses, pair.errors, strict=True)
     ]
     return all(ends) and 0 in pair.statuses
 

@@ -67,7 +67,7 @@ def refused(ended: Ended) -> str:
 
 
 @pytest.mark.parametrize("name", COMMANDS)
-def test_a_wrong_name_is_told_before_anything_is_loaded(name: str, tmp_path: Path) -> None:
+def test_a_wrong_name_is_refused_before_anything_is_loaded(name: str, tmp_path: Path) -> None:
     absent = tmp_path / "absent.muaavatar"
     kind = "directory" if name in ("capture", "eval", "teach", "train") else "file"
     assert refused(started(name, absent)) == f"{absent}: there is no such {kind}"
@@ -90,8 +90,8 @@ def test_what_is_no_recording_is_told_likewise(name: str, tmp_path: Path) -> Non
 @pytest.mark.parametrize("name", ["bake", "export", "view"])
 def test_absent_motion_is_told_likewise(name: str, tmp_path: Path, avatar_file: Path) -> None:
     absent = tmp_path / "walks"
-    told = refused(started(name, avatar_file, "--motion", absent))
-    assert told == f"--motion {absent}: there is no such file or directory"
+    sentence = refused(started(name, avatar_file, "--motion", absent))
+    assert sentence == f"--motion {absent}: there is no such file or directory"
 
 
 @pytest.mark.parametrize("name", COMMANDS)

@@ -198,9 +198,9 @@ def test_shows_what_is_toggled(avatar_file: Path, tmp_path: Path) -> None:
 
 
 def test_without_a_display_says_so_and_offers_a_picture(avatar_file: Path) -> None:
-    told = process("view", avatar_file, DISPLAY="", WAYLAND_DISPLAY="").sentence
-    assert "display" in told
-    assert "-o" in told
+    sentence = process("view", avatar_file, DISPLAY="", WAYLAND_DISPLAY="").sentence
+    assert "display" in sentence
+    assert "-o" in sentence
 
 
 def test_lists_devices_without_a_file() -> None:

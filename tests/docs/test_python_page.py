@@ -13,7 +13,7 @@ from trainings import SMALL
 
 import mua
 from mua.baking import pipeline
-from mua.baking.order import Order
+from mua.baking.settings import BakeSettings
 from mua.student.settings import PRESETS
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "python.md"
@@ -66,17 +66,17 @@ def test_a_bake_is_ordered_as_shown(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     Path("hero.glb").touch()
     Path("walks").mkdir()
     Path("walks/walk_07.bvh").touch()
-    given: list[Order] = []
+    given: list[BakeSettings] = []
     errors = {"training": SimpleNamespace(explained=lambda attribute: {"SH": 0.9}[attribute])}
 
-    def bake(order: Order, _: object) -> SimpleNamespace:
-        given.append(order)
+    def bake(settings: BakeSettings, _: object) -> SimpleNamespace:
+        given.append(settings)
         return SimpleNamespace(errors=errors)
 
     monkeypatch.setattr(pipeline, "bake", bake)
     exec(BAKING, {})
-    (order,) = given
-    assert (order.motions, order.hold_out, order.detail) == ((Path("walks"),), ("walk_07",), {"head": 3})
+    (settings,) = given
+    assert (settings.motions, settings.hold_out, settings.detail) == ((Path("walks"),), ("walk_07",), {"head": 3})
 
 
 def test_a_recording_is_read_and_distilled_as_shown(

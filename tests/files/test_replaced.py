@@ -13,7 +13,7 @@ from synthetic_avatar import synthetic_avatar
 
 import mua
 from mua.baking import check, distillation
-from mua.baking.order import Order
+from mua.baking.settings import BakeSettings
 from mua.capture import Capture, CaptureClip, write_capture
 from mua.motion.mapping import write_mapping
 from mua.motion.poses_file import write_poses
@@ -72,7 +72,7 @@ def test_what_a_check_of_a_character_writes(
     monkeypatch.setattr(check, "fidelity_sheet", lambda _: Image.new("RGB", (2, 2)))
     found = check.Check(None, (), (), (), (), (), ())
     check.write_sheet(opened("a_check.png"), None)  # type: ignore[arg-type]
-    check.write_json(opened("a.json"), Order(tmp_path / "a.muaavatar", tmp_path, preset("tiny")), found)
+    check.write_json(opened("a.json"), BakeSettings(tmp_path / "a.muaavatar", tmp_path, preset("tiny")), found)
     assert replaced(tmp_path / "a_check.png")
     assert replaced(tmp_path / "a.json")
 

@@ -15,7 +15,7 @@ import mua
 from mua.avatar.decode import decode_clip_frame
 from mua.baking import pipeline
 from mua.baking.listener import Listener
-from mua.baking.order import Order
+from mua.baking.settings import BakeSettings
 from mua.pose.resample import resample
 from mua.student.settings import preset
 
@@ -175,14 +175,14 @@ def test_a_bake_refuses_a_wrong_option_in_a_sentence(wrong: str) -> None:
         mua.bake(**options)
 
 
-def test_a_bake_is_ordered_as_its_options_say(
+def test_a_bake_gets_the_settings_that_its_options_say(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
     """Python's log also gets what the command prints."""
-    given: list[Order] = []
+    given: list[BakeSettings] = []
 
-    def carry_out(order: Order, listener: Listener) -> None:
-        given.append(order)
+    def carry_out(settings: BakeSettings, listener: Listener) -> None:
+        given.append(settings)
         listener.note("A note.")
         for stage in ("geometry", "appearance", "geometry"):  # take turns
             listener.stage(stage)
@@ -193,10 +193,10 @@ def test_a_bake_is_ordered_as_its_options_say(
     motion: dict[str, Any] = {"motion": "walk.bvh", "mapping": {"a": "b"}}
     with caplog.at_level("INFO"):
         mua.bake(output=Path("a.muaavatar"), clips=2, hold_out="turn", detail={"head": 3}, texels=64, **motion)
-    (order,) = given
-    assert (order.output, order.work, order.clips) == (Path("a.muaavatar"), Path("a.work"), ("2",))
-    assert (order.hold_out, order.detail, order.mapping) == (("turn",), {"head": 3}, {"a": "b"})
-    assert order.settings == replace(preset("preview"), texels=64)
+    (settings,) = given
+    assert (settings.output, settings.work, settings.clips) == (Path("a.muaavatar"), Path("a.work"), ("2",))
+    assert (settings.hold_out, settings.detail, settings.mapping) == (("turn",), {"head": 3}, {"a": "b"})
+    assert settings.student == replace(preset("preview"), texels=64)
     assert caplog.messages == ["A note.", "geometry", "appearance"]
 
 

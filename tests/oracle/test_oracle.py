@@ -23,8 +23,8 @@ from mua.avatar.camera import orbit
 from mua.avatar.coarser import coarsest
 from mua.avatar.decode import decode_clip_frame
 from mua.avatar.rendering import frame_bounds, visible
-from mua.baking.order import Order
 from mua.baking.pipeline import bake
+from mua.baking.settings import BakeSettings
 from mua.kernels.splat_draw import splat_colors
 from mua.pose.components import read_components
 from mua.pose.descriptor import describe_window
@@ -224,7 +224,7 @@ def test_a_baked_character_decodes_alike(shared_data: SharedData, tmp_path: Path
     """Ten frames in every storage; the student need not be good."""
     tiny = preset("tiny")
     small = replace(tiny, texels=96, frames=40, finetune=replace(tiny.finetune, steps=20))
-    order = Order(
+    settings = BakeSettings(
         tmp_path / "a.muaavatar",
         tmp_path / "work",
         replace(small, regression=replace(tiny.regression, steps=200)),
@@ -233,9 +233,9 @@ def test_a_baked_character_decodes_alike(shared_data: SharedData, tmp_path: Path
         motions=tuple(shared_data.path(motion) for motion in CHARACTERS[name]),
         storage="f32",
     )
-    bake(order, Silent())
-    avatar = read(order.output)
+    bake(settings, Silent())
+    avatar = read(settings.output)
     assert np.abs(avatar.rig.skeleton.bind_rotations - [1, 0, 0, 0]).max() > 0.1
     for storage in STORAGES:
-        write(order.output, avatar, storage=storage)
-        assert_decodes_alike(order.output, frames=10)
+        write(settings.output, avatar, storage=storage)
+        assert_decodes_alike(settings.output, frames=10)

@@ -33,7 +33,7 @@ def assemble(
     clips: Sequence[Clip],  # all that the character is known to do
     notes: str,
     bounded: Sequence[Clip] | None = None,  # what the bounds hold; None: the clips
-    stored: Sequence[Clip] | None = None,  # those of them to store for playback; None: all
+    stored: Sequence[Clip] | None = None,  # clips to store for playback; None: all
 ) -> Avatar:
     """Everything that a player needs, as one avatar."""
     geometry, appearance = export_branches(student)

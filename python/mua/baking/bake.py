@@ -1,46 +1,104 @@
 """A rigged character and its motion become a verified `.muaavatar`, in one call."""
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated, Any
 
 from mua.arguments import PathLike
-from mua.asset.tensors import Storage
 from mua.atlas.detail import UvMode
 from mua.baking.listener import Listener, Log
-from mua.baking.options import read_order
-from mua.baking.order import DeviceName, MotionRange
+from mua.baking.options import bake_settings
+from mua.baking.settings import BakeSettings, MotionRange
+from mua.baking.shared_options import (
+    ClipsOption,
+    DeviceOption,
+    OutputOption,
+    PresetOption,
+    RecipeOption,
+    SeedOption,
+    StorageOption,
+    TexelsOption,
+)
 from mua.extras import naming_extras
 from mua.motion.planted_feet import Feet
+from mua.option import Option, read_options
 
 if TYPE_CHECKING:  # torch takes seconds to load
     from mua.baking.distillation import Baked
 
 
 def bake(
-    character: PathLike | None = None,
+    character: Annotated[
+        PathLike | None,
+        Option(
+            "Rigged character: .glb, .gltf, .vrm, .usd, .usda, .usdc, .usdz or .character; or the folder of a capture.",
+            default="a built-in procedural character",
+        ),
+    ] = None,
     *,
-    teacher: PathLike | None = None,
-    motion: PathLike | Sequence[PathLike] = (),
-    output: PathLike = "avatar.muaavatar",
-    preset: str = "preview",
-    frames: int | None = None,
-    texels: int | None = None,
-    hold_out: str | Sequence[str] = (),
-    clips: str | int | Sequence[str] = "all",
-    leave_out: str | Sequence[str] = (),
-    mapping: PathLike | Mapping[str, str] | None = None,
-    feet: Feet = "auto",
-    motion_range: MotionRange = "full",
-    uv: UvMode = "auto",
-    detail: Mapping[str, float] | Sequence[str] = (),
-    scale: float | None = None,
-    height: float | None = None,
-    recipe: str = "closed-form",
-    storage: Storage = "f16",
-    seed: int = 0,
-    device: DeviceName = "auto",
-    jobs: int | None = None,
-    work: PathLike | None = None,
+    teacher: Annotated[
+        PathLike | None, Option("Folder that mua-teach wrote, to distil instead of a character.", default="none")
+    ] = None,
+    motion: Annotated[
+        PathLike | Sequence[PathLike],
+        Option(
+            "Motion file, or directory of motion files; may be repeated. Where a capture is given, its own motion "
+            "is recorded too.",
+            default="the character's own clips",
+        ),
+    ] = (),
+    output: OutputOption = "avatar.muaavatar",
+    preset: PresetOption = "preview",
+    frames: Annotated[
+        int | None,
+        Option(
+            "Number of training frames to record; a quarter as many held-out frames are added.",
+            default="set by the preset",
+            least=1,
+        ),
+    ] = None,
+    texels: TexelsOption = None,
+    hold_out: Annotated[
+        str | Sequence[str],
+        Option("Clip to keep out of training, to measure errors on; may be repeated.", default="the end of every clip"),
+    ] = (),
+    clips: ClipsOption = "all",
+    leave_out: Annotated[
+        str | Sequence[str],
+        Option("Mesh, node or material of the character file to leave out; may be repeated."),
+    ] = (),
+    mapping: Annotated[
+        PathLike | Mapping[str, str] | None,
+        Option(
+            "JSON or TOML file that gives, for joints of the character, the joint of the motion.",
+            default="matched by name",
+        ),
+    ] = None,
+    feet: Annotated[
+        Feet,
+        Option("Whether standing feet are held in place: auto (if they would slide), keep (never) or plant (always)."),
+    ] = "auto",
+    motion_range: Annotated[
+        MotionRange,
+        Option("Whether a built-in range of motion is trained on beside the character's motion: full or none."),
+    ] = "full",
+    uv: Annotated[UvMode, Option("Keep the character's UVs, unwrap new ones, or choose automatically.")] = "auto",
+    detail: Annotated[
+        Mapping[str, float] | Sequence[str],
+        Option(
+            "Resolution of a body part relative to the others, such as head=2; may be repeated. "
+            "Parts: head, hands, arms, body, legs, feet."
+        ),
+    ] = (),
+    scale: Annotated[float | None, Option("Factor by which to multiply the size in the character file.")] = None,
+    height: Annotated[float | None, Option("Height to scale the character to, in metres.")] = None,
+    recipe: RecipeOption = "closed-form",
+    storage: StorageOption = "f16",
+    seed: SeedOption = 0,
+    device: DeviceOption = "auto",
+    jobs: Annotated[int | None, Option("Number of processes that record.", default="one per CPU core", least=1)] = None,
+    work: Annotated[
+        PathLike | None, Option("Directory for the recording and checkpoints.", default="beside the output")
+    ] = None,
     listener: Listener | None = None,
 ) -> "Baked":
     """Record a teacher of `character`, distil it and write a `.muaavatar`, as mua-bake does: minutes to hours.
@@ -48,10 +106,10 @@ def bake(
     The arguments are the options of mua-bake (docs/bake.md) by the same names, and their errors name the options. Where
     an option may be repeated, one value or several are given; `mapping` is a file or a dictionary, `detail` is a
     dictionary such as `{"head": 2}`. Without a `character` the procedural one is baked; where it is the folder of a
-    capture, a teacher is taught first, and a `teacher` is the folder that `mua.teach` wrote. A call that was
+    capture, a teacher is trained first, and a `teacher` is the folder that `mua.teach` wrote. A call that was
     interrupted goes on where it stopped when the same one is made again.
 
-    `listener` hears of stages, steps and notes; without one they go to the log "mua" of Python's logging.
+    `listener` receives stages, steps and notes; without one they go to the log "mua" of Python's logging.
 
     Errors: InputError for anything that cannot be used; ModuleNotFoundError, with what to install, without the packages
     of the extra `bake`.
@@ -61,9 +119,13 @@ def bake(
         baked = mua.bake("hero.glb", motion="walks", preset="tiny", output="hero.muaavatar")
         baked.errors["training"].explained("SH")
     """
-    options = {name: value for name, value in locals().items() if name != "listener"}
-    order = read_order(options)
+    settings = read_settings(locals())
     with naming_extras("mua.bake"):
         from mua.baking import pipeline  # seconds of loading: only once the options are known to be good
 
-        return pipeline.bake(order, listener or Log())
+        return pipeline.bake(settings, listener or Log())
+
+
+def read_settings(given: Mapping[str, Any]) -> BakeSettings:
+    """The settings that the arguments of `bake`, all of them, ask for; raises InputError for wrong ones."""
+    return bake_settings(read_options(bake, given))

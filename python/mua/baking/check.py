@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from mua.baking.listener import Listener
-from mua.baking.order import Order
-from mua.baking.sources import ordered_character
+from mua.baking.settings import BakeSettings
+from mua.baking.sources import load_baked_character
 from mua.errors import InputError
 from mua.fidelity import report
 from mua.fidelity.compare import Fidelity, compare
@@ -41,27 +41,27 @@ class Check:
     written: tuple[Path, ...]
 
 
-def check(order: Order, listener: Listener) -> Check:
+def check(settings: BakeSettings, listener: Listener) -> Check:
     """Measure fidelity and motion, and leave an image and a mapping file to start from beside the output.
 
     Raises InputError where the character or a motion cannot be read, or where nothing can be written.
     """
-    require_writable(order.output)
+    require_writable(settings.output)
     listener.stage("character")
-    character = ordered_character(order)
+    character = load_baked_character(settings)
     listener.stage("motion")
-    loaded = _loaded(order, character)
-    qualities = tuple(_quality(order, character, motion) for motion in loaded)
+    loaded = _loaded(settings, character)
+    qualities = tuple(_quality(settings, character, motion) for motion in loaded)
     listener.stage("comparison with source")
     clips = [m.clip for m in loaded]
-    fidelity, warnings = fidelity_of(character, clips, texels=order.settings.texels)
-    pairs, unmatched = _matched(character, loaded) if order.motions else ((), ())
+    fidelity, warnings = fidelity_of(character, clips, texels=settings.student.texels)
+    pairs, unmatched = _matched(character, loaded) if settings.motions else ((), ())
     written = []
     if fidelity is not None:
-        written.append(order.beside("_check.png"))
+        written.append(settings.beside("_check.png"))
         write_sheet(written[0], fidelity)
     if pairs or unmatched:
-        written.append(order.beside("_mapping.json"))
+        written.append(settings.beside("_mapping.json"))
         write_mapping(written[-1], pairs, unmatched)
     return Check(
         fidelity=fidelity,
@@ -70,7 +70,7 @@ def check(order: Order, listener: Listener) -> Check:
         unmatched=unmatched,
         notes=counted((*character.notes, *_notes(loaded)), clips),
         warnings=(
-            *_refusals(order, character, loaded),
+            *_refusals(settings, character, loaded),
             *warnings,
             *(flaw for quality in qualities for flaw in quality.flaws),
         ),
@@ -95,11 +95,11 @@ def write_sheet(path: Path, fidelity: Fidelity) -> None:
         fidelity_sheet(fidelity).save(temporary)
 
 
-def as_json(order: Order, found: Check) -> str:
+def as_json(settings: BakeSettings, found: Check) -> str:
     """Every figure, unrounded."""
     content: dict[str, Any] = {
-        "character": None if order.character is None else str(order.character),
-        "texels": order.settings.texels,
+        "character": None if settings.character is None else str(settings.character),
+        "texels": settings.student.texels,
         "fidelity": None if found.fidelity is None else report.as_dict(found.fidelity),
         "motion": [_without_flaws(quality) for quality in found.motions],
         "matched": [asdict(pair) for pair in found.matched],
@@ -110,32 +110,32 @@ def as_json(order: Order, found: Check) -> str:
     return json.dumps(content, indent=1)
 
 
-def write_json(path: Path, order: Order, found: Check) -> None:
-    write_bytes(path, (as_json(order, found) + "\n").encode())
+def write_json(path: Path, settings: BakeSettings, found: Check) -> None:
+    write_bytes(path, (as_json(settings, found) + "\n").encode())
 
 
 def _without_flaws(quality: MotionQuality) -> dict[str, Any]:
     return {name: value for name, value in asdict(quality).items() if name != "flaws"}
 
 
-def _loaded(order: Order, character: Character) -> list[LoadedMotion]:
+def _loaded(settings: BakeSettings, character: Character) -> list[LoadedMotion]:
     """The clips of the motions put on the character, else its own."""
     skeleton = character.skeleton
-    if not order.motions:
+    if not settings.motions:
         matches = match_joints(skeleton, skeleton)
         return [LoadedMotion(clip, SourceMotion(skeleton, clip), matches, ()) for clip in character.clips]
     return [
         motion
-        for path in order.motions
+        for path in settings.motions
         for motion in load_motions(
-            path, skeleton, mapping=order.mapping, rate=RATE, said=character.roles, feet=order.feet, refuse=False
+            path, skeleton, mapping=settings.mapping, rate=RATE, said=character.roles, feet=settings.feet, refuse=False
         )
     ]
 
 
-def _quality(order: Order, character: Character, motion: LoadedMotion) -> MotionQuality:
+def _quality(settings: BakeSettings, character: Character, motion: LoadedMotion) -> MotionQuality:
     """What a clip keeps of its source; a character's own clip is its source."""
-    if order.motions:
+    if settings.motions:
         return measure_motion(motion.source, character.skeleton, motion.clip, motion.matches)
     return MotionQuality(motion.clip.name, 0.0, None, None, None, {}, (), ())
 
@@ -144,10 +144,10 @@ def _notes(loaded: Sequence[LoadedMotion]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(note for motion in loaded for note in motion.notes))
 
 
-def _refusals(order: Order, character: Character, loaded: Sequence[LoadedMotion]) -> tuple[str, ...]:
+def _refusals(settings: BakeSettings, character: Character, loaded: Sequence[LoadedMotion]) -> tuple[str, ...]:
     """Why a bake would refuse the motions, each reason once."""
     found = []
-    for motion in loaded if order.motions and not order.mapping else ():
+    for motion in loaded if settings.motions and not settings.mapping else ():
         try:
             require_limbs(motion.source.skeleton, character.skeleton, motion.matches)
         except InputError as error:

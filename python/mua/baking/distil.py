@@ -1,23 +1,32 @@
 """A recording becomes a verified `.muaavatar`, in one call."""
 
 import os
-from collections.abc import Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, get_args
+from typing import TYPE_CHECKING, Annotated
 
-from mua.arguments import PathLike, as_path, describe, one_of
+from mua.arguments import PathLike, describe
 from mua.asset.tensors import Storage
 from mua.baking.listener import Listener, Log, Nobody
-from mua.baking.options import check_settings, clip_names, work_directory
-from mua.baking.order import DeviceName
+from mua.baking.options import student_settings, work_directory
+from mua.baking.shared_options import (
+    ClipsOption,
+    DeviceName,
+    DeviceOption,
+    OutputOption,
+    PresetOption,
+    RecipeOption,
+    SeedOption,
+    StorageOption,
+)
 from mua.errors import InputError
 from mua.extras import naming_extras
 from mua.files.inputs import require_recording
 from mua.files.lock import DirectoryLock
 from mua.files.write import require_writable
-from mua.student.settings import STAGES, Settings, StageName
+from mua.option import Option, read_options
+from mua.student.settings import Settings, StageName
 
 if TYPE_CHECKING:  # torch takes seconds to load
     from mua.baking.distillation import Baked, Distillation
@@ -25,17 +34,19 @@ if TYPE_CHECKING:  # torch takes seconds to load
 
 
 def train(
-    recording: "PathLike | Recording",
+    recording: Annotated["PathLike | Recording", Option("Directory of a recording, as a TeacherWriter writes it.")],
     *,
-    output: PathLike = "avatar.muaavatar",
-    preset: str = "preview",
-    recipe: str = "closed-form",
-    stage: StageName | None = None,
-    clips: str | int | Sequence[str] = "all",
-    storage: Storage = "f16",
-    seed: int = 0,
-    device: DeviceName = "auto",
-    work: PathLike | None = None,
+    output: OutputOption = "avatar.muaavatar",
+    preset: PresetOption = "preview",
+    recipe: RecipeOption = "closed-form",
+    stage: Annotated[
+        StageName | None, Option("Run only this stage, up to its checkpoint.", default="all stages")
+    ] = None,
+    clips: ClipsOption = "all",
+    storage: StorageOption = "f16",
+    seed: SeedOption = 0,
+    device: DeviceOption = "auto",
+    work: Annotated[PathLike | None, Option("Directory for checkpoints.", default="beside the output")] = None,
     listener: Listener | None = None,
 ) -> "Baked | None":
     """Distil a recording into a `.muaavatar`, as mua-train does: minutes to hours.
@@ -44,7 +55,7 @@ def train(
     Texture size and frames are the recording's. A call that was interrupted goes on where it stopped when the same one
     is made again. Under torchrun several processes train together.
 
-    `listener` hears of stages, steps and notes; without one they go to the log "mua" of Python's logging.
+    `listener` receives stages, steps and notes; without one they go to the log "mua" of Python's logging.
 
     Returns None where a `stage` alone was run, and in all processes under torchrun but the first.
 
@@ -55,38 +66,33 @@ def train(
 
         mua.train("recordings/subject01", output="subject01.muaavatar", storage="i8")
     """
-    settings = check_settings(preset, recipe, seed=seed, frames=None, texels=None)
-    one_of(stage, "stage", (None, *STAGES))
-    order = _Order(
-        output=as_path(output, "output"),
-        work=work_directory(as_path(output, "output"), work),
-        settings=settings,
-        stage=stage,
-        clips=clip_names(clips),
-        storage=one_of(storage, "storage", get_args(Storage)),
-        device=one_of(device, "device", get_args(DeviceName)),
+    options = read_options(train, locals())
+    settings = DistilSettings(
+        **{name: options[name] for name in ("output", "stage", "clips", "storage", "device")},
+        work=work_directory(options["output"], options["work"]),
+        student=student_settings(options),
     )
     if isinstance(recording, str | os.PathLike):
-        recording = as_path(recording, "recording")
+        recording = Path(recording)
         require_recording(recording)
     with naming_extras("mua.train"):
-        return _distil(recording, order, listener or Log())
+        return _distil(recording, settings, listener or Log())
 
 
 @dataclass(frozen=True)
-class _Order:
-    """What a user asks for."""
+class DistilSettings:
+    """What a recording is distilled to, as the options of mua-train say."""
 
     output: Path
     work: Path
-    settings: Settings
+    student: Settings
     stage: StageName | None
     clips: tuple[str, ...]
     storage: Storage
     device: DeviceName
 
 
-def _distil(recording: "Path | Recording", order: _Order, listener: Listener) -> "Baked | None":
+def _distil(recording: "Path | Recording", settings: DistilSettings, listener: Listener) -> "Baked | None":
     from mua.baking.distillation import Distillation, choose_device  # seconds of loading
     from mua.baking.playback import choose, whole_clips
     from mua.baking.report import UNSAID
@@ -97,37 +103,37 @@ def _distil(recording: "Path | Recording", order: _Order, listener: Listener) ->
         opened = Recording(recording) if isinstance(recording, Path) else recording
         if not isinstance(opened, Recording):
             raise InputError(f"recording is {describe(recording)}; expected a directory or a mua.Recording")
-        choose(whole_clips(opened.clips), order.clips)  # before hours of work
+        choose(whole_clips(opened.clips), settings.clips)  # before hours of work
         distillation = Distillation(
-            output=order.output,
-            work=order.work,
-            settings=replace(order.settings, texels=opened.rig.texels.size, frames=opened.count()),
-            device=processes.place(choose_device(order.device)),
-            name=order.output.stem,
+            output=settings.output,
+            work=settings.work,
+            settings=replace(settings.student, texels=opened.rig.texels.size, frames=opened.count()),
+            device=processes.place(choose_device(settings.device)),
+            name=settings.output.stem,
             teacher=UNSAID,
-            playback=order.clips,
-            storage=order.storage,
+            playback=settings.clips,
+            storage=settings.storage,
             processes=processes,
         )
         with _alone(distillation):
-            return _carry_out(distillation, opened, order.stage, listener if processes.first else Nobody())
+            return _carry_out(distillation, opened, settings.stage, listener if processes.first else Nobody())
 
 
-def _alone(order: "Distillation") -> AbstractContextManager[object]:
+def _alone(distillation: "Distillation") -> AbstractContextManager[object]:
     """Keeps others out of the work directory; of processes that train together the first one does."""
-    if not order.processes.first:
+    if not distillation.processes.first:
         return nullcontext()
-    require_writable(order.output)
-    return DirectoryLock(order.work, name=f"--work {order.work}")
+    require_writable(distillation.output)
+    return DirectoryLock(distillation.work, name=f"--work {distillation.work}")
 
 
 def _carry_out(
-    order: "Distillation", recording: "Recording", stage: StageName | None, listener: Listener
+    distillation: "Distillation", recording: "Recording", stage: StageName | None, listener: Listener
 ) -> "Baked | None":
-    from mua.baking.distillation import finish, teach
+    from mua.baking.distillation import distil_student, finish
 
-    student = teach(order, recording, listener, only=stage)
+    student = distil_student(distillation, recording, listener, only=stage)
     if stage is not None:
-        listener.note(f"checkpoints are in {order.checkpoints}")
+        listener.note(f"checkpoints are in {distillation.checkpoints}")
         return None
-    return finish(order, student, recording, listener) if order.processes.first else None
+    return finish(distillation, student, recording, listener) if distillation.processes.first else None

@@ -19,7 +19,8 @@ from mua.baking.contact_sheet import contact_sheet
 from mua.baking.evaluate import Errors, evaluate
 from mua.baking.listener import Listener
 from mua.baking.one_sided import with_one_sided
-from mua.baking.order import ALL, DeviceName
+from mua.baking.settings import ALL
+from mua.baking.shared_options import DeviceName
 from mua.errors import InputError
 from mua.fidelity.compare import Fidelity
 from mua.files.write import remove_leftovers, replacing, require_writable, write_bytes
@@ -42,12 +43,12 @@ class Distillation:
     work: Path  # for the checkpoints
     settings: Settings
     device: torch.device
-    name: str  # of the avatar
+    name: str  # that the avatar gets
     teacher: str  # what the teacher is; stands in the avatar and beside every figure
-    clips: tuple[Clip, ...] | None = None  # of the character, whole; None: those of the recording, their ends joined
+    clips: tuple[Clip, ...] | None = None  # the character's, whole; None: the recording's, their ends joined
     playback: tuple[str, ...] = (ALL,)  # which of them the file holds, as `choose` reads it
     storage: Storage = "f16"
-    fidelity: Fidelity | None = None  # of the character, for the contact sheet
+    fidelity: Fidelity | None = None  # the character's, for the contact sheet
     processes: Processes = ALONE  # that train together; the first of them writes
 
     @property
@@ -84,61 +85,63 @@ def choose_device(name: DeviceName) -> torch.device:
     return torch.device("cuda" if found and name != "cpu" else "cpu")
 
 
-def teach(order: Distillation, recording: Recording, listener: Listener, *, only: StageName | None = None) -> Student:
-    """Train a student on `recording`; its stages are kept in the work directory, and the same order goes on from there.
+def distil_student(
+    distillation: Distillation, recording: Recording, listener: Listener, *, only: StageName | None = None
+) -> Student:
+    """Train a student on `recording`; its stages are kept in the work directory, where the same call resumes.
 
     With `only` one stage is run up to its checkpoints; the student is then unfinished. Raises InputError where there is
     nothing to train on or to start the stage from, or where checkpoints or the output cannot be written.
     """
-    if order.processes.first:
-        require_writable(order.output)
-        remove_leftovers(order.output)
-    with _within_memory(order):
+    if distillation.processes.first:
+        require_writable(distillation.output)
+        remove_leftovers(distillation.output)
+    with _within_memory(distillation):
         return distil(
             recording,
-            order.settings,
-            device=order.device,
-            directory=order.checkpoints,
+            distillation.settings,
+            device=distillation.device,
+            directory=distillation.checkpoints,
             report=listener,
-            processes=order.processes,
+            processes=distillation.processes,
             only=only,
         )
 
 
-def finish(order: Distillation, student: Student, recording: Recording, listener: Listener) -> Baked:
+def finish(distillation: Distillation, student: Student, recording: Recording, listener: Listener) -> Baked:
     """Write the avatar, read it back, measure it and image it."""
     release_memory()
     listener.stage("avatar")
-    clips = playback.whole_clips(recording.clips) if order.clips is None else order.clips
+    clips = playback.whole_clips(recording.clips) if distillation.clips is None else distillation.clips
     starts = playback.held_out(recording.clips)
     shown = [*clips, *playback.range_clips(recording.clips, clips)]
     avatar = assemble(
         student,
         recording.rig,
-        name=order.name,
+        name=distillation.name,
         encoding=student.encoding,
         clips=clips,
         bounded=shown,
-        stored=playback.choose(clips, order.playback),
-        notes=f"{order.teacher}; {playback.held_out_sentence(starts)}",
+        stored=playback.choose(clips, distillation.playback),
+        notes=f"{distillation.teacher}; {playback.held_out_sentence(starts)}",
     )
     avatar = with_one_sided(avatar, shown, progress=listener.step)
-    write(order.output, avatar, storage=order.storage)
-    tree = load(order.output)
+    write(distillation.output, avatar, storage=distillation.storage)
+    tree = load(distillation.output)
     avatar = decode_tree(tree)  # what a user gets, not what was trained
-    stored = _stored(avatar, stored_bytes(tree["clips"]), order.output)
+    stored = _stored(avatar, stored_bytes(tree["clips"]), distillation.output)
 
     listener.stage("evaluation")
     if not recording.whole_count:
         listener.note("the recording keeps no frame whole, so there are neither errors nor a contact sheet")
-        return Baked({}, order.output, stored, order.teacher)
+        return Baked({}, distillation.output, stored, distillation.teacher)
     errors = evaluate(recording, student, avatar=avatar, progress=listener.step)
-    sheet, figures = order.beside("_contact_sheet.png"), order.beside("_errors.md")
-    _picture(sheet, avatar, recording, order.fidelity)
-    write_bytes(figures, report.markdown(errors, teacher=order.teacher).encode())
-    told = report.as_json(errors, teacher=order.teacher, held_out=starts)
-    write_bytes(order.beside("_errors.json"), told.encode())
-    return Baked(errors, order.output, stored, order.teacher, sheet, figures)
+    sheet, figures = distillation.beside("_contact_sheet.png"), distillation.beside("_errors.md")
+    _picture(sheet, avatar, recording, distillation.fidelity)
+    write_bytes(figures, report.markdown(errors, teacher=distillation.teacher).encode())
+    content = report.as_json(errors, teacher=distillation.teacher, held_out=starts)
+    write_bytes(distillation.beside("_errors.json"), content.encode())
+    return Baked(errors, distillation.output, stored, distillation.teacher, sheet, figures)
 
 
 def _stored(avatar: Avatar, clip_bytes: int, path: Path) -> report.Stored:
@@ -147,14 +150,14 @@ def _stored(avatar: Avatar, clip_bytes: int, path: Path) -> report.Stored:
 
 
 @contextmanager
-def _within_memory(order: Distillation) -> Iterator[None]:
+def _within_memory(distillation: Distillation) -> Iterator[None]:
     """Say in a sentence that a GPU is too small."""
     try:
         yield
     except torch.cuda.OutOfMemoryError as error:
         raise InputError(
-            f"--device {order.device}: its memory is too small ({str(error).partition('. ')[0]}); what was trained is "
-            f"kept in {order.checkpoints}, --device cpu goes on from there"
+            f"--device {distillation.device}: its memory is too small ({str(error).partition('. ')[0]}); what was "
+            f"trained is kept in {distillation.checkpoints}, --device cpu goes on from there"
         ) from error
 
 

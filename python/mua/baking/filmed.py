@@ -1,18 +1,18 @@
-"""A bake whose teacher learns, or has learnt, from the images of a capture."""
+"""A bake whose teacher is, or has been, trained on the images of a capture."""
 
 from collections.abc import Mapping
 from functools import partial
 
 import torch
 
-from mua.baking.distillation import Baked, Distillation, finish, teach
-from mua.baking.filmed_motion import filmed_clips, plan_headings, put_on, taught_settings
+from mua.baking.distillation import Baked, Distillation, distil_student, finish
+from mua.baking.filmed_motion import filmed_clips, filmed_settings, plan_headings, put_on
 from mua.baking.listener import Listener
-from mua.baking.order import Order
 from mua.baking.plan import split
 from mua.baking.playback import choose
 from mua.baking.recorded import recorded, recording_key
-from mua.baking.report import TAUGHT
+from mua.baking.report import FILMED
+from mua.baking.settings import BakeSettings
 from mua.baking.teacher_stages import carry_out
 from mua.capture import open_capture
 from mua.files.lock import DirectoryLock
@@ -27,50 +27,50 @@ from mua.training.memory import release_memory
 from mua.training.processes import ALONE
 
 
-def bake_taught(order: Order, device: torch.device, listener: Listener) -> Baked:
-    """Teach first where the order names a capture; then record the teacher, distil it and write the avatar."""
-    require_writable(order.output)
-    folder = order.work / "teacher" if order.teacher is None else order.teacher
-    if order.lessons is not None:
-        assert order.character is not None
+def bake_trained_teacher(settings: BakeSettings, device: torch.device, listener: Listener) -> Baked:
+    """Train a teacher first where the character is a capture; then record it, distil it and write the avatar."""
+    require_writable(settings.output)
+    folder = settings.work / "teacher" if settings.teacher is None else settings.teacher
+    if settings.training is not None:
+        assert settings.character is not None
         with DirectoryLock(folder, name=f"--work {folder}"):
-            carry_out(order.character, folder, order.lessons, device, listener, ALONE, weights=None)
+            carry_out(settings.character, folder, settings.training, device, listener, ALONE, weights=None)
         release_memory()
     listener.stage("motion")
     model, description = load_teacher(folder)
-    clips, planned = _motion(order, model.rig, description.roles, listener)
-    choose(clips, order.clips)  # before hours of work
+    clips, planned = _motion(settings, model.rig, description.roles, listener)
+    choose(clips, settings.clips)  # before hours of work
     key = recording_key(teacher_bytes(folder), planned)
-    recording = recorded(partial(TrainedTeacher, folder), key, order, planned, listener)
+    recording = recorded(partial(TrainedTeacher, folder), key, settings, planned, listener)
     release_memory()
     distillation = Distillation(
-        output=order.output,
-        work=order.work,
-        settings=taught_settings(order.settings, recording.rig.texels.size),
+        output=settings.output,
+        work=settings.work,
+        settings=filmed_settings(settings.student, recording.rig.texels.size),
         device=device,
         name=description.name,
-        teacher=TAUGHT,
+        teacher=FILMED,
         clips=tuple(clips),
-        playback=order.clips,
-        storage=order.storage,
+        playback=settings.clips,
+        storage=settings.storage,
     )
-    return finish(distillation, teach(distillation, recording, listener), recording, listener)
+    return finish(distillation, distil_student(distillation, recording, listener), recording, listener)
 
 
 def _motion(
-    order: Order, rig: Rig, roles: Mapping[str, str], listener: Listener
+    settings: BakeSettings, rig: Rig, roles: Mapping[str, str], listener: Listener
 ) -> tuple[list[Clip], list[PlannedClip]]:
     """The clips of the capture and of the files given, and what of them is recorded."""
     own: list[Clip] = []
     held_out: list[str] = []
-    if order.character is not None:
-        capture = open_capture(order.character)
+    if settings.character is not None:
+        capture = open_capture(settings.character)
         own = filmed_clips(capture)
         held_out = [clip.name for clip in capture.clips if clip.held_out]
-    given, notes = put_on(rig, roles, order.motions, mapping=order.mapping, feet=order.feet)
+    given, notes = put_on(rig, roles, settings.motions, mapping=settings.mapping, feet=settings.feet)
     for sentence in notes:
         listener.note(sentence)
     clips = unique_names([*own, *given])
-    training, held = split(clips, order.hold_out or held_out)
+    training, held = split(clips, settings.hold_out or held_out)
     filmed = [clip.name for clip in own]
-    return clips, plan_headings(rig.skeleton, training, held, filmed=filmed, frames=order.settings.frames)
+    return clips, plan_headings(rig.skeleton, training, held, filmed=filmed, frames=settings.student.frames)

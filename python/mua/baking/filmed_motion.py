@@ -1,4 +1,4 @@
-"""What a teacher that was taught from a capture is recorded on, and what its student reads of it.
+"""What a teacher trained on a capture is recorded on, and what its student reads of it.
 
 Its light stands still in the world, so that colours depend on the heading: the student's descriptor keeps it, as the
 paper's does (Data Assumption), and training clips are recorded facing other ways as well.
@@ -28,7 +28,7 @@ UP = np.array([0.0, 1, 0])
 HEADINGS = 4  # that training clips are recorded at, the filmed one included
 
 
-def taught_settings(settings: Settings, texels: int) -> Settings:
+def filmed_settings(settings: Settings, texels: int) -> Settings:
     """Settings of a student of such a teacher."""
     return replace(settings, texels=texels, generalisation=replace(settings.generalisation, remove_heading=False))
 
@@ -46,10 +46,10 @@ def put_on(
     mapping: Mapping[str, str] | None = None,
     feet: Feet = "auto",
 ) -> tuple[list[Clip], list[str]]:
-    """The clips of motion files on a teacher's skeleton, and what is worth telling of them."""
+    """The clips of motion files on a teacher's skeleton, and notes on them."""
     if not motions:
         return [], []
-    moved = Character(  # what of one motion is put on
+    moved = Character(  # as the skeleton that motion is put on
         "teacher",
         rig.skeleton,
         rig.mesh,
@@ -84,7 +84,7 @@ def plan_headings(
 
 
 def turned(clip: Clip, skeleton: Skeleton, angle: float) -> Clip:
-    """The same clip, turned about the world's Y axis by an angle in radians."""
+    """A clip turned about the world's Y axis by an angle in radians."""
     turn = rotation.from_axis_angle(UP, angle)
     tops = np.flatnonzero(skeleton.parents < 0)
     rotations, translations = clip.rotations.copy(), clip.translations.copy()

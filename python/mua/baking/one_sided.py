@@ -29,13 +29,13 @@ from mua.splatting.rasterise import largest_shares
 from mua.training.threads import in_order
 from mua.training.torch_threads import thread_share
 
-LARGEST_SHARE = 1 / 24  # of a pixel's colour
-OPEN = 0.01  # of the figure's largest side: texels so near to an open edge are not one-sided
-SAME_PLACE = 1e-6  # of the same: vertices so near to each other are one, as along the seams of a texture
+LARGEST_SHARE = 1 / 24  # as a part of a pixel's colour
+OPEN = 0.01  # times the figure's largest side: texels so near to an open edge are not one-sided
+SAME_PLACE = 1e-6  # times the same side: vertices so near to each other are one, as along the seams of a texture
 POSES, VIEWS = 8, 24  # views of each pose
 THREADS = 4  # views drawn at once, at most: each holds an image and its splats
 PIXEL = 1.0  # texels, in the middle of an image
-FOV = np.radians(60)  # of the images; near enough for openings to be looked into
+FOV = np.radians(60)  # the images': near enough for openings to be looked into
 LARGEST_SIDE = 4096  # pixels
 SAME = 1e-9  # squared sines, summed over joints, of poses that are one
 LOOKED_AT = 512  # frames, evenly over all clips, among which poses are chosen

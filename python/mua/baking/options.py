@@ -1,142 +1,100 @@
-"""What the options of a bake may be; asked before anything is loaded, so that a wrong one costs no time."""
+"""The settings of a bake from its options; wrong ones are refused before anything is loaded, so they cost no time."""
 
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, get_args
+from typing import Any
 
-from mua.arguments import PathLike, as_names, as_path, as_paths, finite_array, one_of, whole_number
-from mua.asset.tensors import Storage
-from mua.atlas.detail import UvMode, read_detail
-from mua.baking.order import DeviceName, MotionRange, Order
-from mua.channels import COARSE_TEXELS
+from mua.atlas.detail import read_detail
+from mua.baking.settings import BakeSettings
 from mua.characters.figure_size import FigureSize
 from mua.errors import InputError
 from mua.files.inputs import is_capture, require_file, require_motion, require_teacher
 from mua.files.write import missing_directory
 from mua.motion.formats import require_format
 from mua.motion.mapping import read_mapping
-from mua.motion.planted_feet import Feet
 from mua.student.settings import Settings, preset, with_recipe
 from mua.teachers.trained.settings import teacher_preset
 
 SUFFIX = ".muaavatar"
-LESSONS = {"tiny": "tiny", "preview": "small", "paper": "paper"}  # the teacher's preset by the student's
-LEAST_TEXELS = 2 * COARSE_TEXELS  # something must be left of a texture that is halved so many times
+TEACHER_PRESETS = {"tiny": "tiny", "preview": "small", "paper": "paper"}  # by the preset of the student
 
 
-def read_order(options: Mapping[str, Any]) -> Order:
-    """The order of the options of `mua.bake`, all of them by name; raises InputError for what no bake can have."""
-    written, uv = as_path(options["output"], "output"), one_of(options["uv"], "uv", get_args(UvMode))
-    character = None if options["character"] is None else as_path(options["character"], "character")
-    order = Order(
-        output=written,
-        work=work_directory(written, options["work"]),
-        settings=check_settings(
-            options["preset"],
-            options["recipe"],
-            seed=options["seed"],
-            frames=options["frames"],
-            texels=options["texels"],
-        ),
-        device=one_of(options["device"], "device", get_args(DeviceName)),
-        character=character,
-        teacher=None if options["teacher"] is None else as_path(options["teacher"], "teacher"),
-        motions=as_paths(options["motion"], "motion"),
-        hold_out=as_names(options["hold_out"], "hold_out"),
+def bake_settings(options: Mapping[str, Any]) -> BakeSettings:
+    """The settings that the options of `mua.bake` give; raises InputError for options that do not go together."""
+    as_given = ("output", "device", "character", "teacher", "hold_out", "feet", "motion_range", "leave_out", "uv")
+    settings = BakeSettings(
+        **{name: options[name] for name in (*as_given, "storage", "clips")},
+        work=work_directory(options["output"], options["work"]),
+        student=student_settings(options),
+        motions=options["motion"],
         mapping=_joints(options["mapping"]),
-        feet=one_of(options["feet"], "feet", get_args(Feet)),
-        motion_range=one_of(options["motion_range"], "motion_range", get_args(MotionRange)),
-        leave_out=as_names(options["leave_out"], "leave_out"),
-        uv=uv,
-        detail=read_detail(_written(options["detail"]), uv=uv),
-        size=FigureSize(scale=_number(options["scale"], "scale"), height=_number(options["height"], "height")),
-        storage=one_of(options["storage"], "storage", get_args(Storage)),
-        jobs=check_jobs(options["jobs"]),
-        clips=clip_names(options["clips"]),
+        detail=read_detail(_as_texts(options["detail"]), uv=options["uv"]),
+        size=FigureSize(scale=options["scale"], height=options["height"]),
+        jobs=cores() if options["jobs"] is None else options["jobs"],
     )
-    if order.teacher is None and (character is None or not is_capture(character)):
-        check_inputs(character, order.motions)
+    if settings.teacher is None and (settings.character is None or not is_capture(settings.character)):
+        check_inputs(settings.character, settings.motions)
     else:
-        order = _taught(order, options)
-    check_output(order.output, order.work)
-    _check_of_motion(order)
-    return order
+        settings = _with_trained_teacher(settings, options)
+    check_output(settings.output, settings.work)
+    _check_motion_options(settings)
+    return settings
 
 
-def _check_of_motion(order: Order) -> None:
-    """Raises InputError for an option that says what becomes of motion files where there are none."""
-    for name, given in (("--mapping", order.mapping is not None), ("--feet plant", order.feet == "plant")):
-        if given and not order.motions:
+def student_settings(options: Mapping[str, Any]) -> Settings:
+    """The student's preset with the options that override it, where there are such."""
+    settings = replace(preset(options["preset"]), seed=options["seed"])
+    overrides = {name: options[name] for name in ("frames", "texels") if options.get(name) is not None}
+    return replace(with_recipe(settings, options["recipe"]), **overrides)
+
+
+def _check_motion_options(settings: BakeSettings) -> None:
+    """Raises InputError for an option that applies to motion files where there are none."""
+    for name, given in (("--mapping", settings.mapping is not None), ("--feet plant", settings.feet == "plant")):
+        if given and not settings.motions:
             raise InputError(f"{name}: works only with --motion, which is not given")
 
 
-def _taught(order: Order, options: Mapping[str, Any]) -> Order:
-    """The order of a bake whose teacher learns, or has learnt, from images."""
+def _with_trained_teacher(settings: BakeSettings, options: Mapping[str, Any]) -> BakeSettings:
+    """The settings of a bake whose teacher is, or is going to be, trained on images."""
     for name in ("uv", "detail", "scale", "height", "leave_out"):
-        if options[name] not in (None, (), [], {}, "auto"):
+        if options[name] not in (None, (), {}, "auto"):
             raise InputError(
                 f"--{name.replace('_', '-')}: the capture's own capture.json says it; leave the option out"
             )
-    check_inputs(None, order.motions)
-    if order.teacher is None:
-        lessons = replace(
-            teacher_preset(LESSONS[options["preset"]]), texels=order.settings.texels, seed=order.settings.seed
-        )
-        return replace(order, lessons=lessons)
-    filmed = order.character is not None and is_capture(order.character)
-    if order.character is not None and not filmed:
-        raise InputError(f"--teacher {order.teacher}: has its own character; leave {order.character} out")
+    check_inputs(None, settings.motions)
+    if settings.teacher is None:
+        training = teacher_preset(TEACHER_PRESETS[options["preset"]])
+        student = settings.student
+        return replace(settings, training=replace(training, texels=student.texels, seed=student.seed))
+    filmed = settings.character is not None and is_capture(settings.character)
+    if settings.character is not None and not filmed:
+        raise InputError(f"--teacher {settings.teacher}: has its own character; leave {settings.character} out")
     if options["texels"] is not None:
         raise InputError(
             f"--texels {options['texels']}: the texture is as large as the teacher's; leave the option out"
         )
-    require_teacher(order.teacher)
-    if not order.motions and not filmed:
-        raise InputError(f"--teacher {order.teacher}: give the motion to record with --motion")
-    return order
+    require_teacher(settings.teacher)
+    if not settings.motions and not filmed:
+        raise InputError(f"--teacher {settings.teacher}: give the motion to record with --motion")
+    return settings
 
 
-def work_directory(output: Path, work: PathLike | None) -> Path:
-    """Where what is not finished yet is kept: beside the output where nothing else is said."""
-    return output.with_suffix(".work") if work is None else as_path(work, "work")
+def work_directory(output: Path, work: Path | None) -> Path:
+    """Where unfinished results are kept: beside the output by default."""
+    return output.with_suffix(".work") if work is None else work
 
 
-def clip_names(clips: str | int | Sequence[str]) -> tuple[str, ...]:
-    """The clips to store, as `mua.baking.playback.choose` reads them: names, or "all", "none" or a number."""
-    return (str(clips),) if isinstance(clips, int) and not isinstance(clips, bool) else as_names(clips, "clips")  # type: ignore[arg-type]
-
-
-def _joints(mapping: PathLike | Mapping[str, str] | None) -> Mapping[str, str] | None:
+def _joints(mapping: Path | Mapping[str, str] | None) -> Mapping[str, str] | None:
     """Target joint to source joint, from a mapping or the file that holds one."""
-    if mapping is None or isinstance(mapping, Mapping):
-        return mapping
-    return read_mapping(as_path(mapping, "mapping"))
+    return read_mapping(mapping) if isinstance(mapping, Path) else mapping
 
 
-def _written(detail: Mapping[str, float] | Sequence[str]) -> tuple[str, ...]:
+def _as_texts(detail: Mapping[str, float] | tuple[str, ...]) -> tuple[str, ...]:
     """Factors by part as the command line has them: head=2."""
-    if isinstance(detail, Mapping):
-        return tuple(f"{part}={factor}" for part, factor in detail.items())
-    return as_names(detail, "detail")
-
-
-def _number(value: float | None, name: str) -> float | None:
-    return None if value is None else float(finite_array(value, name, ()))
-
-
-def check_settings(name: str, recipe: str, *, seed: int, frames: int | None, texels: int | None) -> Settings:
-    """The preset of that name with what overrides it; raises InputError for a value that no bake can have."""
-    settings = with_recipe(replace(preset(name), seed=seed), recipe)
-    if frames is not None and whole_number(frames, "frames") < 1:
-        raise InputError(f"--frames {frames}: expected at least 1")
-    if texels is not None and (whole_number(texels, "texels") < LEAST_TEXELS or texels % COARSE_TEXELS):
-        raise InputError(f"--texels {texels}: expected a multiple of {COARSE_TEXELS} from {LEAST_TEXELS} on")
-    if whole_number(seed, "seed") < 0:
-        raise InputError(f"--seed {seed}: expected 0 or more")
-    settings = replace(settings, frames=settings.frames if frames is None else frames)
-    return replace(settings, texels=settings.texels if texels is None else texels)
+    return tuple(f"{part}={factor}" for part, factor in detail.items()) if isinstance(detail, Mapping) else detail
 
 
 def check_inputs(character: Path | None, motions: Sequence[Path]) -> None:
@@ -147,13 +105,6 @@ def check_inputs(character: Path | None, motions: Sequence[Path]) -> None:
         require_motion(motion)
     for motion in motions:
         require_format(motion)
-
-
-def check_jobs(jobs: int | None) -> int:
-    """How many processes; raises InputError where it is none."""
-    if jobs is not None and whole_number(jobs, "jobs") < 1:
-        raise InputError(f"--jobs {jobs}: expected at least 1")
-    return cores() if jobs is None else jobs
 
 
 def cores() -> int:

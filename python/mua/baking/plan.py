@@ -12,7 +12,7 @@ from mua.recording import PlannedClip
 HELD_SHARE = 5  # without --hold-out, the last fifth of every clip is held out
 HELD_FRAMES = 40  # recorded of each held-out clip at most, all of them whole
 HELD_PART = 4  # all held-out clips together get at most a quarter as many frames as training
-WHOLE_FRAMES = 60  # of all training frames, kept whole to measure the error on
+WHOLE_FRAMES = 60  # training frames kept whole to measure the error on
 SHORTEST = 2 * HELD_SHARE  # frames of a clip that is worth cutting
 RUN_UP = 2.0  # seconds before a held-out end that a teacher plays first, so that its cloth is in motion
 ENDING = " (end)"  # after a clip's name: its held-out end, recorded as a clip of its own
@@ -48,7 +48,7 @@ def _cut(clips: Sequence[Clip]) -> tuple[list[Clip], list[HeldOut]]:
     training, held = [], []
     for clip in clips:
         at, end = len(clip) - len(clip) // HELD_SHARE, clip.name + ENDING
-        if len(clip) < SHORTEST or end in names:  # who has a clip of that very name keeps both whole
+        if len(clip) < SHORTEST or end in names:  # a clip that already has that name: both stay whole
             training.append(clip)
             continue
         training.append(clip.cut(slice(at)))

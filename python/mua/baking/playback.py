@@ -4,8 +4,8 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from mua.baking.order import ALL, NONE
 from mua.baking.plan import ENDING
+from mua.baking.settings import ALL, NONE
 from mua.errors import InputError
 from mua.pose.clip import Clip, is_range
 from mua.recording import RecordedClip
@@ -68,8 +68,8 @@ def held_out(recorded: Sequence[RecordedClip]) -> dict[str, int]:
 
 def held_out_sentence(starts: dict[str, int]) -> str:
     """What was held out, for a person who reads it in the file."""
-    told = [name if start == 0 else f"{name} from frame {start}" for name, start in starts.items()]
-    return f"held out of training: {', '.join(told)}" if told else "no clip was held out of training"
+    clips = [name if start == 0 else f"{name} from frame {start}" for name, start in starts.items()]
+    return f"held out of training: {', '.join(clips)}" if clips else "no clip was held out of training"
 
 
 def typical_frame(

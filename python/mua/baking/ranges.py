@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-from mua.baking.order import Order
 from mua.baking.plan import plan
+from mua.baking.settings import BakeSettings
 from mua.baking.sources import load_clips
 from mua.motion.range import motion_range
 from mua.pose.clip import RANGE_OF_MOTION, Clip
@@ -17,29 +17,31 @@ SHORT_SHARE = 3  # where that motion is shorter, its missing frames are of the r
 FEWEST = 135  # for, or to so many
 
 
-def clips_of(order: Order, character: Character) -> tuple[list[Clip], list[str]]:
+def clips_of(settings: BakeSettings, character: Character) -> tuple[list[Clip], list[str]]:
     """The clips that a bake is of, and notes: those of the files, else the character's, else the range of motion."""
-    if order.motions or character.clips or order.motion_range == "none":
-        return load_clips(character, order.motions, mapping=order.mapping, feet=order.feet)
-    clips = motion_range(character, (), frames=order.settings.frames, seed=order.settings.seed)
+    if settings.motions or character.clips or settings.motion_range == "none":
+        return load_clips(character, settings.motions, mapping=settings.mapping, feet=settings.feet)
+    clips = motion_range(character, (), frames=settings.student.frames, seed=settings.student.seed)
     clips = [replace(clip, name=clip.name.removeprefix(RANGE_OF_MOTION)) for clip in clips]  # they are the motion
     note = f"{character.name}: holds no animation; its motion is a built-in range of motion made for its rig"
     return clips, [f"{note}. --motion adds motion of your own."]
 
 
-def settings_for(order: Order, character: Character) -> Settings:
+def settings_for(settings: BakeSettings, character: Character) -> Settings:
     """The settings of a bake: where the range of motion is the only motion, none of its frames is the user's."""
-    if order.motions or character.clips or order.motion_range == "none":
-        return order.settings
-    return replace(order.settings, generalisation=replace(order.settings.generalisation, own=False))
+    if settings.motions or character.clips or settings.motion_range == "none":
+        return settings.student
+    return replace(settings.student, generalisation=replace(settings.student.generalisation, own=False))
 
 
-def planned_range(order: Order, character: Character, clips: Sequence[Clip], frames: int) -> list[PlannedClip]:
+def planned_range(
+    settings: BakeSettings, character: Character, clips: Sequence[Clip], frames: int
+) -> list[PlannedClip]:
     """What is recorded of the range of motion beside `frames` training frames of `clips`; none of it is kept whole."""
-    if order.motion_range == "none" or (clips and not order.motions and not character.clips):
+    if settings.motion_range == "none" or (clips and not settings.motions and not character.clips):
         return []
-    count = range_frames(order.settings.frames, frames)
-    made = motion_range(character, clips, frames=count, seed=order.settings.seed)
+    count = range_frames(settings.student.frames, frames)
+    made = motion_range(character, clips, frames=count, seed=settings.student.seed)
     return [replace(planned, whole=frozenset()) for planned in plan(made, [], frames=count)]
 
 

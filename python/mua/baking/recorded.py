@@ -1,10 +1,10 @@
-"""A teacher's recording in a bake's work directory, taken up where an earlier run of the same order left it."""
+"""A teacher's recording in a bake's work directory, taken up where an earlier run of the same bake left it."""
 
 import hashlib
 from collections.abc import Callable, Iterable
 
 from mua.baking.listener import Listener
-from mua.baking.order import Order
+from mua.baking.settings import BakeSettings
 from mua.pose.clip import Clip
 from mua.pose.encoding import RATE
 from mua.recording import PlannedClip, Recording
@@ -14,17 +14,21 @@ from mua.version import __version__
 
 
 def recorded(
-    make_teacher: Callable[[], Teacher], key: str, order: Order, planned: list[PlannedClip], listener: Listener
+    make_teacher: Callable[[], Teacher],
+    key: str,
+    settings: BakeSettings,
+    planned: list[PlannedClip],
+    listener: Listener,
 ) -> Recording:
-    """The recording of `planned`; `key` of `recording_key` tells it from other orders' recordings."""
-    directory = order.work / f"recording-{key}"
+    """The recording of `planned`; `key` of `recording_key` distinguishes it from those of other settings."""
+    directory = settings.work / f"recording-{key}"
     listener.stage("recording")
     total = sum(len(clip.wanted) for clip in planned)
     record_by_workers(
         make_teacher,
         planned,
         directory,
-        jobs=order.jobs,
+        jobs=settings.jobs,
         rate=RATE,
         progress=lambda done, workers: listener.step(done, total, detail=f"{workers} at work"),
         note=listener.note,

@@ -17,7 +17,7 @@ PICTURED = 3  # frames
 MESHES = 64  # that are looked at, beside those of whole frames
 SHORTEST = 12  # frames of a clip whose order can be checked
 MOVES = np.radians(3)  # the mean turn of joints between any two frames of a clip that moves
-IN_ORDER = 0.6  # of that: the most that neighbouring frames differ by
+IN_ORDER = 0.6  # times that turn: the most that neighbouring frames differ by
 UPRIGHT, MOSTLY = 0.5, 0.9  # cosine of the lean, and the share of frames that lean further, of a figure that lies
 STILL = 1e-4  # standard deviation of a channel's samples that is invisible
 
@@ -80,12 +80,12 @@ def _one_for_each_cause(findings: list[Finding]) -> tuple[Finding, ...]:
 def _motion(recording: Recording) -> Iterator[Finding]:
     for clip in recording.clips:
         if len(clip) >= SHORTEST and _out_of_order(clip):
-            told = f"clip {clip.name!r}: neighbouring frames differ nearly as much as any two frames of it"
-            yield Finding(f"{told}: are they in order, at {clip.rate:g} frames per second?", certain=False)
+            problem = f"clip {clip.name!r}: neighbouring frames differ nearly as much as any two frames of it"
+            yield Finding(f"{problem}: are they in order, at {clip.rate:g} frames per second?", certain=False)
     lean = np.concatenate([_lean(recording.rig.skeleton, clip) for clip in recording.clips] or [np.zeros(0)])
     if len(lean) and np.mean(lean < UPRIGHT) > MOSTLY:
-        told = f"the figure lies or hangs in {100 * np.mean(lean < UPRIGHT):.0f} % of all frames"
-        yield Finding(f"{told}: does the motion have another up axis than the rig? Y is expected", certain=False)
+        problem = f"the figure lies or hangs in {100 * np.mean(lean < UPRIGHT):.0f} % of all frames"
+        yield Finding(f"{problem}: does the motion have another up axis than the rig? Y is expected", certain=False)
 
 
 def _out_of_order(clip: Clip) -> bool:
@@ -108,9 +108,9 @@ def _lean(skeleton: Skeleton, clip: Clip) -> Array:
 
 
 def _variety(recording: Recording) -> Iterator[Finding]:
-    """What a student could not learn, or what could not be measured."""
+    """What cannot be distilled, or cannot be measured."""
     if not recording.count():
-        yield Finding("no training frame has a mesh and a texture, so nothing can be learnt", certain=True)
+        yield Finding("no training frame has a mesh and a texture, so nothing can be distilled", certain=True)
         return
     if not recording.count(held_out=True):
         yield Finding("no clip is held out, so errors on unseen motion will not be measured", certain=False)

@@ -13,7 +13,7 @@ from mua.baking.evaluate import MESH, PICTURES, TRAINING, UNITS, Errors, held_ou
 from mua.channels import ATTRIBUTES
 
 STAND_IN = "the teacher is a simulated stand-in, not a capture"
-TAUGHT = "the teacher was taught from the images of a capture"
+FILMED = "the teacher was trained on the images of a capture"
 UNSAID = "the recording does not say whether its teacher is a capture or a simulation"
 LEGEND = (
     "Errors are root mean squares of whole vectors. Mean: the mean texture of the training frames. Best: the best "
@@ -39,7 +39,7 @@ class Stored:
     """What the file holds for playback, and what that takes."""
 
     clips: int
-    seconds: float  # of all clips together
+    seconds: float  # that all clips together last
     clip_bytes: int
     file_bytes: int
 
@@ -135,12 +135,12 @@ def missed(errors: Errors, attribute: str) -> tuple[str, str, str]:
 
 def as_json(groups: Mapping[str, Errors], *, teacher: str, held_out: Mapping[str, int]) -> str:
     """Every figure, unrounded; `held_out` says from which frame on each clip was held out of training."""
-    told: dict[str, object] = {"teacher": teacher, "held_out_from": dict(held_out)}
-    told["groups"] = {name: _figures(errors) for name, errors in groups.items()}
+    content: dict[str, object] = {"teacher": teacher, "held_out_from": dict(held_out)}
+    content["groups"] = {name: _figures(errors) for name, errors in groups.items()}
     held = held_out_errors(groups)
     if held is not None:
-        told["held_out"] = _figures(held)
-    return json.dumps(told, indent=1)
+        content["held_out"] = _figures(held)
+    return json.dumps(content, indent=1)
 
 
 def _figures(errors: Errors) -> dict[str, object]:

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from mua.atlas.detail import Detail, UvMode
-from mua.baking.order import Order
+from mua.baking.settings import BakeSettings
 from mua.characters.figure_size import AS_FOUND, FigureSize
 from mua.characters.read import read_character
 from mua.errors import InputError
@@ -19,15 +19,15 @@ from mua.rig.character import Character
 ATLAS = 1024  # texels of the base-colour atlas along a side
 
 
-def ordered_character(order: Order) -> Character:
-    """The character of a bake or a check, with what the order says of its layout and size."""
+def load_baked_character(settings: BakeSettings) -> Character:
+    """The character of a bake or a check, with the layout and size that its settings ask for."""
     return load_character(
-        order.character,
-        uv=order.uv,
-        seed=order.settings.seed,
-        detail=order.detail,
-        size=order.size,
-        leave_out=order.leave_out,
+        settings.character,
+        uv=settings.uv,
+        seed=settings.student.seed,
+        detail=settings.detail,
+        size=settings.size,
+        leave_out=settings.leave_out,
     )
 
 
@@ -62,9 +62,9 @@ def load_clips(
     mapping: Mapping[str, str] | None,
     feet: Feet = "auto",
 ) -> tuple[list[Clip], list[str]]:
-    """The clips of `motions` put on the character, or the character's own; and what is worth telling of them.
+    """The clips of `motions` put on the character, or the character's own; and notes on them.
 
-    Clips of one name are told apart by a number. Errors: InputError where there is no motion at all.
+    Clips of one name are numbered. Errors: InputError where there is no motion at all.
     """
     if not motions:
         if not character.clips:

@@ -87,7 +87,7 @@ def _perceptual(weights: Path | None, device: torch.device) -> Perceptual | None
 
 
 class _Reporter:
-    """Tells a listener of stages and steps, and looks at a camera that is not learnt from now and then."""
+    """Reports stages and steps, and compares images of a held-out camera now and then."""
 
     def __init__(self, image_loss: ImageLoss, preview: Preview | None, listener: Listener) -> None:
         self._image_loss, self._preview, self._listener = image_loss, preview, listener

@@ -1,42 +1,59 @@
 """A capture becomes a teacher, in one call."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, get_args
+from typing import TYPE_CHECKING, Annotated, Any, get_args
 
-from mua.arguments import PathLike, as_path, finite_array, one_of, whole_number
+from mua.arguments import PathLike
 from mua.baking.listener import Listener, Log, Nobody
-from mua.baking.options import LEAST_TEXELS
-from mua.baking.order import DeviceName
-from mua.channels import COARSE_TEXELS
+from mua.baking.shared_options import DeviceName, SeedOption, TexelsOption
 from mua.errors import InputError
 from mua.extras import naming_extras
 from mua.files.inputs import require_capture, require_file
 from mua.files.lock import DirectoryLock
 from mua.files.write import missing_directory, require_writable
-from mua.teachers.trained.settings import Rasteriser, TeacherSettings, teacher_preset
+from mua.option import Option, read_options
+from mua.teachers.trained.settings import PRESETS, Rasteriser, TeacherSettings, teacher_preset
 
 if TYPE_CHECKING:  # torch takes seconds to load
     from mua.training.processes import Processes
 
-MOST_DEGREES = 10.0  # that a pose may be refined by
-
 
 def teach(
-    capture: PathLike,
+    capture: Annotated[PathLike, Option("Folder of a capture; it holds a capture.json.", metavar="CAPTURE")],
     *,
-    output: PathLike = "teacher",
-    preset: str = "tiny",
-    steps: int | None = None,
-    texels: int | None = None,
-    drivable: bool = False,
-    colour_correction: bool = True,
-    refine: float = 0.0,
-    lpips_weights: PathLike | None = None,
-    rasteriser: Rasteriser = "mua",
-    seed: int = 0,
-    device: DeviceName = "auto",
+    output: Annotated[PathLike, Option("Folder to write the teacher to.", short="-o")] = "teacher",
+    preset: Annotated[
+        str, Option("Size of the teacher; small and paper are meant for a GPU.", choices=tuple(PRESETS))
+    ] = "tiny",
+    steps: Annotated[int | None, Option("Number of training steps.", default="set by the preset", least=1)] = None,
+    texels: TexelsOption = None,
+    drivable: Annotated[bool, Option("Fit first how motion deforms the template, to meshes or masks.")] = False,
+    colour_correction: Annotated[
+        bool, Option("Fit how cameras differ in colour; without, all are taken to show colours alike.")
+    ] = True,
+    refine: Annotated[
+        float,
+        Option(
+            "Degrees by which each joint, and centimetres by which the root may be moved to fit the images "
+            "better; 0 trusts the poses.",
+            least=0,
+            most=10,
+            unit="degrees",
+        ),
+    ] = 0.0,
+    lpips_weights: Annotated[
+        PathLike | None,
+        Option("Weights of torchvision's AlexNet or VGG16, for a perceptual term in the loss.", default="none"),
+    ] = None,
+    rasteriser: Annotated[
+        Rasteriser, Option("Rasteriser to train with; gsplat needs a GPU.", choices=get_args(Rasteriser))
+    ] = "mua",
+    seed: SeedOption = 0,
+    device: Annotated[DeviceName, Option("Where to train.")] = "auto",
     listener: Listener | None = None,
 ) -> Path:
     """Train a teacher on the images of a capture, as mua-teach does: minutes to days. Returns the teacher's folder.
@@ -45,7 +62,7 @@ def teach(
     A call that was interrupted goes on where it stopped when the same one is made again. Under torchrun several
     processes train together.
 
-    `listener` hears of stages, steps and notes; without one they go to the log "mua" of Python's logging.
+    `listener` receives stages, steps and notes; without one they go to the log "mua" of Python's logging.
 
     Errors: InputError for anything that cannot be used; ModuleNotFoundError, with what to install, without the packages
     of the extra `teach`.
@@ -54,73 +71,63 @@ def teach(
 
         mua.teach("captures/anna", output="teachers/anna", preset="small")
     """
-    settings = _settings(preset, steps=steps, texels=texels, refine=refine, seed=seed)
-    settings = replace(
-        settings,
-        drivable=drivable,
-        colour_correction=colour_correction,
-        rasteriser=one_of(rasteriser, "rasteriser", get_args(Rasteriser)),
-    )
-    if settings.rasteriser == "gsplat" and find_spec("gsplat") is None:
-        raise InputError("--rasteriser gsplat: the Python package gsplat is not installed; pip install gsplat")
-    output, weights = as_path(output, "output"), None
-    if lpips_weights is not None:
-        weights = as_path(lpips_weights, "lpips_weights")
-        require_file(weights)
-    if output.exists() and not output.is_dir():
-        raise InputError(f"-o {output}: is a file, expected a folder")
-    missing_directory(output, option="-o")
-    order = _Order(
-        as_path(capture, "capture"), output, settings, one_of(device, "device", get_args(DeviceName)), weights
-    )
-    require_capture(order.capture)
+    settings = _read_settings(read_options(teach, locals()))
     with naming_extras("mua.teach"):
         from mua.training.processes import joined
 
         with joined() as processes:
-            _teach(order, processes, listener or Log())
-    return output
+            _train(settings, processes, listener or Log())
+    return settings.output
 
 
 @dataclass(frozen=True)
-class _Order:
-    """What a user asks for."""
+class TrainTeacherSettings:
+    """What a teacher is trained on and how, as the options of mua-teach say."""
 
     capture: Path
     output: Path
-    settings: TeacherSettings
+    teacher: TeacherSettings
     device: DeviceName
-    weights: Path | None  # of LPIPS
+    lpips_weights: Path | None
 
 
-def _settings(name: str, *, steps: int | None, texels: int | None, refine: float, seed: int) -> TeacherSettings:
-    settings = teacher_preset(name)
-    if steps is not None:
-        if whole_number(steps, "steps") < 1:
-            raise InputError(f"--steps {steps}: expected at least 1")
-        settings = replace(settings, texture=replace(settings.texture, steps=steps))
+def _read_settings(options: Mapping[str, Any]) -> TrainTeacherSettings:
+    """Raises InputError for what cannot be trained with, on or to."""
+    teacher, output, weights = _teacher_settings(options), options["output"], options["lpips_weights"]
+    if teacher.rasteriser == "gsplat" and find_spec("gsplat") is None:
+        raise InputError("--rasteriser gsplat: the Python package gsplat is not installed; pip install gsplat")
+    if weights is not None:
+        require_file(weights)
+    if output.exists() and not output.is_dir():
+        raise InputError(f"-o {output}: is a file, expected a folder")
+    missing_directory(output, option="-o")
+    require_capture(options["capture"])
+    return TrainTeacherSettings(options["capture"], output, teacher, options["device"], weights)
+
+
+def _teacher_settings(options: Mapping[str, Any]) -> TeacherSettings:
+    """The teacher's preset with the options that override it."""
+    same = ("drivable", "colour_correction", "refine", "rasteriser", "seed")
+    settings = replace(teacher_preset(options["preset"]), **{name: options[name] for name in same})
+    if options["steps"] is not None:
+        settings = replace(settings, texture=replace(settings.texture, steps=options["steps"]))
+    texels = options["texels"]
     if texels is not None:
-        if whole_number(texels, "texels") < LEAST_TEXELS or texels % COARSE_TEXELS:
-            raise InputError(f"--texels {texels}: expected a multiple of {COARSE_TEXELS} from {LEAST_TEXELS} on")
         settings = replace(settings, texels=texels, rows=settings.rows * texels // settings.texels)
-    if whole_number(seed, "seed") < 0:
-        raise InputError(f"--seed {seed}: expected 0 or more")
-    degrees = float(finite_array(refine, "refine", ()))
-    if not 0 <= degrees <= MOST_DEGREES:
-        raise InputError(f"--refine {degrees:g}: expected 0 to {MOST_DEGREES:g} degrees")
-    return replace(settings, refine=degrees, seed=seed)
+    return settings
 
 
-def _teach(order: _Order, processes: "Processes", listener: Listener) -> None:
+def _train(settings: TrainTeacherSettings, processes: "Processes", listener: Listener) -> None:
     from mua.baking.distillation import choose_device  # seconds of loading
     from mua.baking.teacher_stages import carry_out
 
-    device = processes.place(choose_device(order.device))
-    if order.settings.rasteriser == "gsplat" and device.type != "cuda":
+    output, device = settings.output, processes.place(choose_device(settings.device))
+    if settings.teacher.rasteriser == "gsplat" and device.type != "cuda":
         raise InputError(f"--rasteriser gsplat: draws on NVIDIA GPUs only, and the device is {device.type}")
+    stages = partial(carry_out, settings.capture, output, settings.teacher, device, weights=settings.lpips_weights)
     if not processes.first:
-        carry_out(order.capture, order.output, order.settings, device, Nobody(), processes, weights=order.weights)
+        stages(Nobody(), processes)
         return
-    require_writable(order.output / "teacher.json")
-    with DirectoryLock(order.output, name=f"-o {order.output}"):
-        carry_out(order.capture, order.output, order.settings, device, listener, processes, weights=order.weights)
+    require_writable(output / "teacher.json")
+    with DirectoryLock(output, name=f"-o {output}"):
+        stages(listener, processes)

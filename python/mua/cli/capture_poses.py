@@ -16,7 +16,7 @@ from mua.files.write import require_writable
 if TYPE_CHECKING:  # takes long to load
     from mua.capture.keypoint_fit import Fitted
 
-NOTED = 0.1  # of the length of limbs, by which the template may be of another size than the person
+NOTED = 0.1  # relative difference in limb length between template and person that is worth a note
 
 
 def poses(

@@ -6,7 +6,7 @@ from rich.console import Console
 from rich.table import Table
 
 from mua.baking.check import Check, check, write_json
-from mua.baking.order import Order
+from mua.baking.settings import BakeSettings
 from mua.cli.console import printer, say
 from mua.cli.display import Display
 from mua.fidelity.compare import Fidelity
@@ -16,15 +16,15 @@ from mua.motion.quality import MotionQuality
 FEW = 5  # joints that are named
 
 
-def check_and_show(order: Order, json: Path | None) -> None:
+def check_and_show(settings: BakeSettings, json: Path | None) -> None:
     """Check a character and its motion and print what was found."""
     if json is not None:
         require_writable(json)
     console = printer()
     with Display(console) as display:
-        found = check(order, display)
+        found = check(settings, display)
     if json is not None:
-        write_json(json, order, found)
+        write_json(json, settings, found)
     show(console, found)
     if json is not None:
         say(console, str(json))
@@ -80,12 +80,12 @@ def _motion_table(motions: tuple[MotionQuality, ...]) -> Table:
 
 def _joints(found: Check) -> str:
     """How many joints the motion moves, and the first of those that it leaves still; the mapping file has all."""
-    told = f"The motion moves {len(found.matched)} joints"
+    moved = f"The motion moves {len(found.matched)} joints"
     if not found.unmatched:
-        return f"{told}, all that have skin."
+        return f"{moved}, all that have skin."
     few = ", ".join(found.unmatched[:FEW])
     more = len(found.unmatched) - FEW
-    return f"{told}, and not {few}{f' and {more} others' if more > 0 else ''}; the mapping file names all."
+    return f"{moved}, and not {few}{f' and {more} others' if more > 0 else ''}; the mapping file names all."
 
 
 def _measured(value: float | None, shape: str) -> str:

@@ -42,8 +42,8 @@ def _clips(clips: tuple[RecordedClip, ...]) -> Table:
 
 
 def _print(console: Console, found: RecordingCheck) -> None:
-    for name, told in found.figures.items():
-        say(console, f"{name:<8} {told}")
+    for name, figure in found.figures.items():
+        say(console, f"{name:<8} {figure}")
     for finding in found.findings:
         say(console, f"{'mistake' if finding.certain else 'warning':<8} {finding.sentence}")
     if not found.findings:

@@ -28,9 +28,9 @@ class Display:
         )
         self._open: dict[str, tuple[TaskID, float]] = {}  # stages that have not ended, and when each began
         self._stage = ""  # that steps belong to
-        self._told = 0.0
+        self._last_line = 0.0
         self._spoken = ""  # the stage that the last line was about
-        self._notes: dict[str, int] = {}  # of this stage, and how often each came
+        self._notes: dict[str, int] = {}  # notes of this stage, and how often each came
 
     def __enter__(self) -> "Display":
         self.progress.start()
@@ -64,7 +64,7 @@ class Display:
         if name not in self._open:
             return
         self.progress.update(self._open[name][0], completed=done, total=total, detail=detail)
-        if self.progress.disable and time.monotonic() - self._told >= LINE_SECONDS:
+        if self.progress.disable and time.monotonic() - self._last_line >= LINE_SECONDS:
             left = self._task(name).time_remaining
             ending = "" if left is None else f", {left / 60:.0f} min left"
             self._say(f"  {self._among(name)}{done} of {total}{', ' if detail else ''}{detail}{ending}")
@@ -99,9 +99,9 @@ class Display:
         return next(task for task in self.progress.tasks if task.id == self._open[name][0])
 
     def _say(self, line: str) -> None:
-        self._told = time.monotonic()
+        self._last_line = time.monotonic()
         self.console.print(line, highlight=False, soft_wrap=True)
-        self.console.file.flush()  # who reads a log reads it now
+        self.console.file.flush()  # so that a log file has it now
 
 
 def show(console: Console, baked: "Baked") -> None:

@@ -31,7 +31,7 @@ class Source:
 
     file: Path
     motion: Path | None = None  # in place of the file's own clips
-    mapping: Path | None = None  # of joints
+    mapping: Path | None = None  # file that pairs the joints of both
     clip: str | None = None  # the first if None
 
 
@@ -102,7 +102,7 @@ def _paths(output: Path, kind: Kind, numbers: range) -> list[Path]:
 
 
 def _with_progress(contents: Iterator[T], output: Path, count: int) -> Iterator[T]:
-    """The same, with a bar in a terminal."""
+    """Show a progress bar in a terminal while the contents are made."""
     console = Console(stderr=True)
     hidden = count == 1 or not console.is_terminal
     return iter(track(contents, description=output.name, total=count, console=console, disable=hidden))

@@ -49,7 +49,7 @@ def model_legend(device: ModelDevice, instructions: int) -> tuple[str, ...]:
 
 
 def measured_line(measured: Measured) -> str:
-    """The same stages where they were measured."""
+    """The stages as measured, beside the modelled ones."""
     width, height = measured.screen
     decode, pose, draw = measured_stages(measured).values()
     return (

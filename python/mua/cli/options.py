@@ -1,6 +1,5 @@
 """The two options that every command has, --version and --quiet, and options that are a function's arguments."""
 
-import copy
 import functools
 import inspect
 import os
@@ -12,6 +11,8 @@ from typing import Annotated, Any, get_args, get_origin
 
 import typer
 
+from mua.cli.choice import choice
+from mua.option import Option, declared, takes_path, takes_several
 from mua.version import __version__
 
 
@@ -34,7 +35,7 @@ def command_name() -> str:
 
 
 def with_common_options(command: Callable[..., None]) -> Callable[..., None]:
-    """The same command with --version and --quiet after its own options."""
+    """Add --version and --quiet after a command's own options."""
 
     @functools.wraps(command)
     def run(*, version: bool, quiet: bool, **given: Any) -> None:
@@ -58,24 +59,44 @@ def with_version(*, version: Version = False) -> None:
     """What a command of several commands can do by itself."""
 
 
-def in_panels(
-    kinds: Mapping[str, Any],  # of each option: a terminal's type, with its help
-    panels: Mapping[str, Sequence[str]],  # title to the names of its options
+def command_options(
+    function: Callable[..., object],
+    panels: Mapping[str, Sequence[str]] | None = None,  # title in --help to the names of its options
 ) -> dict[str, Any]:
-    """The same options, those of a panel under its title in --help."""
-    titles = {name: title for title, names in panels.items() for name in names}
-    grouped = {}
-    for name, kind in kinds.items():
-        of, option = get_args(kind)
-        option = copy.copy(option)  # another command may share it
-        option.rich_help_panel = titles.get(name)
-        grouped[name] = Annotated[of, option]
-    return grouped
+    """What a terminal takes for each option that a public function declares, as typer has it."""
+    titles = {name: title for title, names in (panels or {}).items() for name in names}
+    return {
+        argument.name: Annotated[_typed(argument, kind, option), _described(argument, option, titles)]
+        for argument, kind, option in declared(function)
+    }
+
+
+def _typed(argument: inspect.Parameter, kind: Any, option: Option) -> Any:
+    """The type of a terminal's value; an argument without a name is a path."""
+    if takes_several(kind):
+        return list[Path] if takes_path(kind) else list[str]
+    if argument.kind is argument.POSITIONAL_OR_KEYWORD or takes_path(kind):
+        return Path if argument.default is argument.empty or argument.default is not None else Path | None
+    return str if option.choices else kind
+
+
+def _described(argument: inspect.Parameter, option: Option, titles: Mapping[str, str]) -> Any:
+    """Typer's own declaration of an option."""
+    if argument.kind is argument.POSITIONAL_OR_KEYWORD:
+        return typer.Argument(help=option.help, show_default=option.default, metavar=option.metavar)
+    name = f"--{argument.name.replace('_', '-')}"
+    if option.choices:
+        described = choice(option.choices, name, help=option.help)
+    else:
+        flags = [name, option.short] if option.short else [name] if argument.default is False else []
+        described = typer.Option(*flags, help=option.help, show_default=option.default)
+    described.rich_help_panel = titles.get(argument.name)
+    return described
 
 
 def lent_by(
     function: Callable[..., object],
-    kinds: Mapping[str, Any],  # of each argument that is an option: a terminal's type, with its help
+    kinds: Mapping[str, Any],  # by argument: the type that a terminal takes, with its help
 ) -> Callable[[Callable[..., None]], Callable[..., None]]:
     """Give a command the arguments of a function, by the names and defaults that they have there."""
     arguments = inspect.signature(function).parameters

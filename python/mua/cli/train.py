@@ -10,30 +10,11 @@ from mua.baking.distil import train
 from mua.cli.console import printer
 from mua.cli.display import Display, show
 from mua.cli.failure import run_command
-from mua.cli.options import lent_by
-from mua.cli.training_options import BOTH
+from mua.cli.options import command_options, lent_by
 from mua.files.inputs import require_recording
-from mua.student.settings import StageName
-
-# As for mua-bake, of each argument of mua.train.
-OPTIONS = {
-    "recording": Annotated[Path, typer.Argument(help="Directory of a recording, as a TeacherWriter writes it.")],
-    "output": BOTH["output"],
-    "preset": BOTH["preset"],
-    "recipe": BOTH["recipe"],
-    "stage": Annotated[
-        StageName | None,
-        typer.Option(help="Run only this stage, up to its checkpoint.", show_default="all stages"),
-    ],
-    "clips": BOTH["clips"],
-    "storage": BOTH["storage"],
-    "seed": BOTH["seed"],
-    "device": BOTH["device"],
-    "work": Annotated[Path | None, typer.Option(help="Directory for checkpoints.", show_default="beside the output")],
-}
 
 
-@lent_by(train, OPTIONS)
+@lent_by(train, command_options(train))
 def main(
     *,
     check: Annotated[

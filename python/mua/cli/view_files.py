@@ -33,7 +33,7 @@ Painter: TypeAlias = Callable[[int, Sequence[Camera]], Array]  # a frame's premu
 class _Take:
     """What is painted, image after image."""
 
-    frames: list[int]  # of the clip
+    frames: list[int]  # frames of the clip
     cameras: list[tuple[Camera, ...]]
     rate: float  # images a second
 
@@ -41,10 +41,10 @@ class _Take:
 def write(
     output: Path,
     kind: Kind,
-    source: Source,  # of one file
+    source: Source,  # the avatar of one file
     look: Look,
     *,
-    frames: str | None,  # of a video
+    frames: str | None,  # FIRST:END of a video
     device: str | None,
     reference: bool,  # computed on the CPU
 ) -> None:

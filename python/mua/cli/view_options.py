@@ -1,4 +1,4 @@
-"""What the options of mua-view ask for, in the window and in files alike; told before anything is loaded."""
+"""What the options of mua-view ask for, in the window and in files alike; checked before anything is loaded."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

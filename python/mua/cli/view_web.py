@@ -33,7 +33,7 @@ class Where:
     stereo: bool
 
     def attributes(self, front: float) -> dict[str, str]:
-        """Of the element, for a figure whose front is at so many degrees. Errors: InputError for what is no number."""
+        """Attributes of the element for one that faces `front` degrees; raises InputError for what is no number."""
         given = {"azimuth": self.azimuth, "elevation": self.elevation, "orbit": self.orbit or 0.0}
         for name, value in given.items():
             if not math.isfinite(value):

@@ -4,7 +4,7 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from mua.baking.filmed_motion import filmed_clips, plan_headings, taught_settings
+from mua.baking.filmed_motion import filmed_clips, filmed_settings, plan_headings
 from mua.baking.recorded import recording_key
 from mua.capture import Capture
 from mua.cli.display import Display
@@ -34,7 +34,7 @@ def system_entries(
     else:
         recording = Recording(order.train_on)
         require_skeleton(f"--train-on {order.train_on}", recording.rig.skeleton, capture.surfaces.skeleton)
-    settings = taught_settings(settings, recording.rig.texels.size)
+    settings = filmed_settings(settings, recording.rig.texels.size)
     training = prepare(order, recording, settings, work, display)
     names = SYSTEM_NAMES if ALL in order.system else tuple(dict.fromkeys(order.system))
     failures: list[str] = []

@@ -1,4 +1,4 @@
-"""What a user asks of a bake or of a check; known before anything that takes seconds is loaded."""
+"""What a bake or a check is to do; known before anything that takes seconds is loaded."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -7,23 +7,23 @@ from typing import Literal
 
 from mua.asset.tensors import Storage
 from mua.atlas.detail import Detail, UvMode
+from mua.baking.shared_options import DeviceName
 from mua.characters.figure_size import AS_FOUND, FigureSize
 from mua.motion.planted_feet import Feet
 from mua.student.settings import Settings
 from mua.teachers.trained.settings import TeacherSettings
 
-ALL, NONE = "all", "none"  # of the clips
-DeviceName = Literal["auto", "cpu", "cuda"]
+ALL, NONE = "all", "none"  # clips to store for playback
 MotionRange = Literal["full", "none"]
 
 
 @dataclass(frozen=True)
-class Order:
-    """One character, its motion, and what is to become of them; the fields are the options of mua-bake."""
+class BakeSettings:
+    """One character, its motion, and what is to become of them, as the options of mua-bake say."""
 
     output: Path
     work: Path
-    settings: Settings
+    student: Settings
     device: DeviceName = "auto"  # that the student is trained on
     character: Path | None = None  # None: the procedural character
     motions: tuple[Path, ...] = ()  # none: the character's own clips
@@ -37,8 +37,8 @@ class Order:
     size: FigureSize = AS_FOUND
     storage: Storage = "f16"
     jobs: int = 1  # processes that record side by side
-    teacher: Path | None = None  # that was taught from images; None: the simulated character
-    lessons: TeacherSettings | None = None  # of the teacher that is taught first, where the character is a capture
+    teacher: Path | None = None  # that was trained on images; None: the simulated character
+    training: TeacherSettings | None = None  # sets the teacher that is trained first on a capture
     clips: tuple[str, ...] = (ALL,)  # which the file holds for playback: names, or "all", "none" or a number
 
     def beside(self, ending: str) -> Path:
