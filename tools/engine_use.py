@@ -13,7 +13,7 @@ from pathlib import Path
 from csharp_source import accesses, syntax
 
 ROOT = Path(__file__).resolve().parents[1]
-sys.path[:0] = [str(ROOT / "tests" / "unity")]
+sys.path[:0] = [str(ROOT / "tests" / "unity"), str(ROOT / "tests" / "fixtures")]
 
 from csharp import CSharp  # noqa: E402 with the tests' modules on the path
 from package_compiler import PLAYERS, STAND_INS, Compiler, assemblies, engine_symbols  # noqa: E402

@@ -16,7 +16,7 @@ import shader_source
 ROOT = Path(__file__).resolve().parents[1]
 KERNELS = ROOT / "ComputeShaders"
 GOLDEN = ROOT / "tests" / "parity" / "golden"
-sys.path += [str(ROOT / "tests" / "parity"), str(ROOT / "tests")]
+sys.path += [str(ROOT / "tests" / name) for name in ("parity", "fixtures", "")]
 
 import golden_decoding  # noqa: E402 their folder is known only now
 import golden_sorting  # noqa: E402

@@ -15,7 +15,7 @@ from threading import Thread
 from typing import IO, Any
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.append(str(ROOT / "tests"))
+sys.path += [str(ROOT / "tests"), str(ROOT / "tests" / "fixtures")]
 
 from web.browser import Browser  # noqa: E402
 from web.pages import ELEMENT  # noqa: E402

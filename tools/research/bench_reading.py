@@ -13,7 +13,7 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path += [str(ROOT / "tests"), str(ROOT / "tests" / "unity")]
+sys.path += [str(ROOT / "tests" / name) for name in ("", "fixtures", "unity")]
 
 from csharp import PROGRAMS, RUNTIME, CSharp  # noqa: E402
 
