@@ -60,11 +60,15 @@ def test_the_file_of_a_process_that_is_gone_locks_nobody_out(tmp_path: Path, lef
         assert (tmp_path / locks.NAME).read_text() == str(os.getpid())
 
 
-def test_a_missing_directory_is_made_and_an_empty_file_stays(tmp_path: Path) -> None:
+def test_nothing_but_what_was_there_before_is_left(tmp_path: Path) -> None:
     with DirectoryLock(tmp_path / "new" / "work", name="it"):
-        assert (tmp_path / "new" / "work" / locks.NAME).read_text() == str(os.getpid())
-    assert [path.name for path in (tmp_path / "new" / "work").iterdir()] == [locks.NAME]
-    assert (tmp_path / "new" / "work" / locks.NAME).read_text() == ""
+        assert (tmp_path / "new" / "work" / locks.NAME).exists()
+    assert list(tmp_path.iterdir()) == [tmp_path / "new"]
+    assert list((tmp_path / "new").iterdir()) == []
+    (tmp_path / "file").touch()
+    with DirectoryLock(tmp_path, name="it"):
+        pass
+    assert sorted(tmp_path.iterdir()) == [tmp_path / "file", tmp_path / "new"]
 
 
 def test_processes_that_come_and_go_are_never_there_together(tmp_path: Path) -> None:
@@ -72,7 +76,7 @@ def test_processes_that_come_and_go_are_never_there_together(tmp_path: Path) -> 
     for process in everyone:
         process.communicate()
     assert [process.returncode for process in everyone] == [0] * 4
-    assert not (tmp_path / "work" / "mark").exists()
+    assert not (tmp_path / "work").exists()
 
 
 def test_a_lock_is_let_go_with_its_holder(tmp_path: Path) -> None:

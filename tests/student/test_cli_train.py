@@ -190,7 +190,7 @@ def test_a_preset_says_how_large_the_student_is(
     written: Path, tmp_path: Path, command: Commands, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     given: list[Any] = []
-    monkeypatch.setattr("mua.baking.distil._distil", lambda _, order, __: given.append(order.settings))
+    monkeypatch.setattr("mua.baking.distil._distil", lambda _, settings, __: given.append(settings.student))
     for name in ("tiny", "preview"):
         assert command("train", written, "-o", tmp_path / "a.muaavatar", "--preset", name).status == 0
     assert [settings.hidden for settings in given] == [preset(name).hidden for name in ("tiny", "preview")]

@@ -27,7 +27,8 @@ QUICK = 1  # of PNG's levels of compression
 class ViewStore:
     """`view` gives what `Capture.view` does with the same crop and rows, from a folder where it is there already.
 
-    Where image or mask is missing, it gives a view without the person.
+    Where image or mask is missing, it gives a view without the person; where the folder of images that it has read is
+    gone, it raises InputError.
     """
 
     def __init__(
@@ -38,6 +39,7 @@ class ViewStore:
         self._room = limit - sum(file.stat().st_size for file in folder.rglob("*.png"))
         self._background = cache(self._read_background)
         self._missing: set[tuple[str, int, str]] = set()  # clip, frame and camera that were looked for once
+        self._read_from: set[Path] = set()  # folders of images
 
     def view(self, clip: str, frame: int, camera: str) -> View:
         """A view; where one frame of a video is missing, the clip's frames are decoded and stored from there on."""
@@ -48,13 +50,18 @@ class ViewStore:
         if not place.is_file() and self._room > 0 and self._is_video(clip, calibrated):
             with suppress(MissingImage):  # of this frame or of a later one
                 self._store_rest(clip, frame, calibrated)
+        images = self._capture.files(clip, frame, camera).image.parent
         if place.is_file():
+            self._read_from.add(images)
             return self._read(place, calibrated)
         try:
             view = self._capture.view(clip, frame, camera, crop=self._crop, rows=rows)
         except MissingImage:
+            if images in self._read_from and not images.is_dir():
+                raise
             self._missing.add((clip, frame, camera))
             return nobody(calibrated, rows=rows)
+        self._read_from.add(images)
         self._write(place, view)
         return view
 

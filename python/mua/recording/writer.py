@@ -150,7 +150,7 @@ class TeacherWriter:
         evaluation and stay out of the mean. Raises InputError for a complete clip or another `held_out` than before.
         """
         if not isinstance(name, str) or not name:
-            raise InputError(f"recording {self.directory}: the clip's name is {describe(name)}; expected a string")
+            raise InputError(f"recording {self.directory}: the clip's name is {describe(name)}; expected a text")
         if name == self._clip:
             return
         state = self._clips.get(name, _ClipState(held_out))
