@@ -1,0 +1,93 @@
+"""Features that stop working are noticed: every fault of planted.toml, put into a copy of the tree, fails its test.
+
+A fault is an edit of the kind that a hurried engineer makes: an option that is read and ignored, the left hand for the
+right one, state that outlives its object. Faults of the shaders are in tests/parity/mutations.py.
+"""
+
+import os
+import shutil
+import subprocess
+import sys
+import tomllib
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+HERE = Path(__file__).parent
+ROOT = HERE.parents[1]
+SECONDS = 900  # a test that hangs
+
+
+class Fault(NamedTuple):
+    """What is wrong once `original`, which stands once in `file`, reads `replacement`."""
+
+    breaks: str
+    file: str
+    original: str
+    replacement: str
+    tests: list[str]  # that notice, as pytest names them, from the top of the checkout
+
+    def applied_to(self, text: str) -> str:
+        return text.replace(self.original, self.replacement)
+
+
+FAULTS = [Fault(**entry) for entry in tomllib.loads((HERE / "planted.toml").read_text())["fault"]]
+
+
+def name(fault: Fault) -> str:
+    return f"{Path(fault.file).stem}: {fault.breaks}"
+
+
+@pytest.fixture(scope="session")
+def copied_tree(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
+    """The tracked files of the checkout, with what its tests find beside it and in folders that git ignores."""
+    copy = tmp_path_factory.mktemp("copy") / "tree"
+    listed = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    for file in filter(None, listed.split("\0")):
+        (copy / file).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy2(ROOT / file, copy / file)
+    for beside, ignored in ((ROOT.parent / "shared", copy.parent / "shared"), (ROOT / "build", copy / "build")):
+        if beside.exists():
+            ignored.symlink_to(beside)
+    modules = Path("tests") / "web" / "node_modules"
+    if (ROOT / modules).exists():
+        (copy / modules).symlink_to(ROOT / modules)
+    yield copy
+    shutil.rmtree(copy)
+
+
+def ends(tree: Path, tests: Iterable[str]) -> int:
+    """The status of tests in a copy of the tree."""
+    command = [sys.executable, "-m", "pytest", "-c", "pyproject.toml", "-x", "-n0", "-p", "no:randomly", *tests]
+    environment = {**os.environ, "PYTHONPATH": str(tree / "python")}
+    environment.pop("PYTEST_XDIST_WORKER", None)
+    command += ["-p", "no:cacheprovider"]
+    ran = subprocess.run(command, cwd=tree, env=environment, capture_output=True, check=False, timeout=SECONDS)
+    return ran.returncode
+
+
+@pytest.mark.parametrize("fault", FAULTS, ids=name)
+def test_a_fault_can_be_planted(fault: Fault) -> None:
+    assert (ROOT / fault.file).read_text().count(fault.original) == 1
+    assert fault.applied_to(fault.original) != fault.original
+    assert fault.tests
+    assert all((ROOT / test.partition("::")[0]).is_file() for test in fault.tests)
+
+
+@pytest.mark.long
+def test_all_pass_without_faults(copied_tree: Path) -> None:
+    assert ends(copied_tree, dict.fromkeys(test for fault in FAULTS for test in fault.tests)) == pytest.ExitCode.OK
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("fault", FAULTS, ids=name)
+def test_a_planted_fault_is_noticed(copied_tree: Path, fault: Fault) -> None:
+    planted = copied_tree / fault.file
+    sound = planted.read_text()
+    planted.write_text(fault.applied_to(sound))
+    try:
+        assert ends(copied_tree, fault.tests) == pytest.ExitCode.TESTS_FAILED
+    finally:
+        planted.write_text(sound)
