@@ -86,7 +86,8 @@ def test_every_option_has_a_test_that_holds_it(command: str) -> None:
     parameters = inspect.signature(getattr(importlib.import_module(module), function)).parameters
     assert set(tests) == set(parameters) - {"context", "listener"}
     for file, test in (named.split(".", 1) for named in tests.values()):
-        assert callable(getattr(importlib.import_module(f"test_{file}"), test.split("[")[0])), f"{file}: {test}"
+        (path,) = Path(__file__).parents[1].rglob(f"test_{file}.py")
+        assert f"def {test.split('[')[0]}(" in path.read_text(), f"{file}: {test}"
 
 
 def test_every_command_is_in_the_table() -> None:
