@@ -8,8 +8,8 @@ import torch
 from limbs import limb_steps, limbs_apart, two_limbs
 
 from mua.student.components import Components
-from mua.student.points import BLEND, RADII, draw_points, exchange, scatter
-from mua.student.regress import regress
+from mua.student.points import BLEND, RADII, draw_close, draw_points, exchange, scatter
+from mua.student.regress import CLOTH, MESH, regress
 from mua.student.settings import Generalisation
 from mua.training.checkpoint import Checkpoints
 from mua.training.optimise import Run
@@ -91,6 +91,37 @@ def test_an_mlp_follows_the_users_frames_and_the_others_roughly(tmp_path: Path) 
     assert errors["half"][half].mean() < 0.5 * size[half].mean()
     assert errors["half"][~half].mean() > 0.7 * size[~half].mean()
     assert errors["none"].mean() > 1.5 * errors["all"].mean()
+
+
+def test_close_points_are_those_of_a_frame_but_for_little_noise() -> None:
+    frames = torch.randn(50, 6, generator=seeded(2))
+    close = draw_close(frames, 400, generator=seeded(1))
+    distance, nearest = torch.cdist(close, frames).min(1)
+    assert 0 < distance.mean() < 0.1 * frames.std(0).norm()
+    assert len(nearest.unique()) == len(frames)
+
+
+def test_a_final_fit_follows_the_users_frames_more_closely(tmp_path: Path) -> None:
+    inputs, shown = two_limbs(200, seed=3, together=True)
+    own = inputs.norm(dim=1) < inputs.norm(dim=1).median()
+    errors = {}
+    for name, fit in (("start", CLOTH), ("final", MESH)):
+        run = Run(seeded(), Checkpoints(tmp_path / name, "k"), lambda _: None, torch.device("cpu"))
+        mlp = regress(
+            inputs,
+            torch.where(own[:, None], shown, 3 * shown),
+            components=PLAIN,
+            hidden=64,
+            schedule=Schedule(steps=600, batch=64, lr=3e-3),
+            stage="x",
+            run=run,
+            own=own,
+            fit=fit,
+        )
+        with torch.no_grad():
+            errors[name] = (mlp(inputs) - shown)[own].norm(dim=1).median()
+    print(errors)
+    assert errors["final"] < 0.8 * errors["start"]
 
 
 def test_an_mlp_fitted_to_exchanged_parts_carries_over_to_limbs_that_move_apart(tmp_path: Path) -> None:

@@ -14,6 +14,7 @@ from mua.student.settings import Generalisation
 
 FARTHEST = 16.0  # factor of a point's own distance from the mean
 BLEND = 0.5  # points lie up to this far on the way to a frame
+CLOSE = 0.05  # noise of points close to frames, in spreads of each direction
 RADII = 4  # a random joint is exchanged with those within a random radius of fewer than this many joints
 
 
@@ -35,6 +36,17 @@ def draw_points(
         around = torch.cat([around, scatter(mixed, z, generalisation.exchanged_noise, generator=generator)])
     outward(around, round(generalisation.outside * count), generator=generator)
     return components.hold(around)
+
+
+def draw_close(
+    z: Tensor,  # [F, K] components of frames
+    count: int,
+    *,
+    generator: torch.Generator,
+) -> Tensor:
+    """Random frames [count, K], moved by little noise."""
+    drawn = torch.randn(count, z.shape[1], generator=generator).to(z)
+    return pick(z, count, generator=generator).add_(drawn.mul_(CLOSE * z.std(0, correction=0)))
 
 
 def outward(

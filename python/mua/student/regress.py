@@ -13,9 +13,9 @@ from mua.student.components import Components
 from mua.student.conditioned import Conditioned
 from mua.student.local import Locality
 from mua.student.model import build_mlp, linear_layers
-from mua.student.points import draw_points
+from mua.student.points import draw_close, draw_points
 from mua.student.settings import Generalisation
-from mua.student.smoother import Smooth, Sum, fit_beyond, fit_smoother
+from mua.student.smoother import RIDGE, Smooth, Sum, fit_beyond, fit_smoother
 from mua.training.optimise import Run, optimise
 from mua.training.processes import Share
 from mua.training.schedule import Schedule
@@ -28,14 +28,17 @@ FORGONE = 1e-4  # share of the spread of a part's view of the descriptors
 GENERALISATION = Generalisation()
 
 
-class Beyond(NamedTuple):
-    """How frames beyond the user's motion enter the function."""
+class Fit(NamedTuple):
+    """How closely the function follows the frames, and whether the MLP is fine-tuned on them afterwards."""
 
-    noise: float  # noise variance of their values: light follows the pose, cloth also its history
+    beyond: float  # noise variance of frames beyond the user's motion: light follows the pose, cloth also its history
     fades: bool  # whether the function fades to the mean of these frames; else to that of the user's
+    own: float = RIDGE  # noise variance of what the user's frames show besides
+    final: bool = False  # whether nothing fits the MLP to the frames afterwards
 
 
-CLOTH, LIGHT = Beyond(10.0, fades=False), Beyond(0.1, fades=True)
+CLOTH, LIGHT = Fit(10.0, fades=False), Fit(0.1, fades=True)
+MESH = Fit(10.0, fades=False, own=5e-4, final=True)
 
 
 def regress(
@@ -50,13 +53,15 @@ def regress(
     expand: Tensor | None = None,  # [K, M]
     locality: Locality | None = None,
     own: Tensor | None = None,  # [F] bool, the frames of the user's motion; None: all
-    beyond: Beyond = CLOTH,
+    fit: Fit = CLOTH,
     generalisation: Generalisation = GENERALISATION,
 ) -> Conditioned:
     """An MLP from components to targets, or to targets @ expand, fitted to the smooth function through them.
 
     It is fitted to values of that function at points around the frames. With `locality` the function is a sum over body
-    parts, each of the joints near it, and the points go where parts are as in different frames.
+    parts, each of the joints near it, and the points go where parts are as in different frames. In a final fit a third
+    of the points are close to the user's frames, and the error is absolute: the few frames in which cloth follows its
+    history must not blur all others.
     """
     schedule = schedule.over(len(inputs))
     z = components(inputs)
@@ -67,19 +72,24 @@ def regress(
     goal = targets / unit
     mlp = seeded_mlp(z.shape[1], hidden, goal.shape[1], run=run)
     count = max(schedule.steps * schedule.batch // VISITS, 1)
+    close = count // 3 if fit.final else 0
+    error = absolute_error if fit.final else squared_error
 
     @cache  # computed when first used: not at all where a finished stage is resumed
     def samples() -> dict[range, tuple[Tensor, Tensor]]:
         generator = run.alone(f"{stage} points").generator
-        smooth = fit_local(inputs, goal, components, locality, generator=generator, own=own, beyond=beyond)
+        smooth = fit_local(inputs, goal, components, locality, generator=generator, own=own, fit=fit)
         points = draw_points(
             inputs,
             components,
-            count,
+            count - close,
             steps=None if locality is None else locality.steps,
             generalisation=generalisation,
             generator=generator,
         )
+        if close:
+            frames = z if own is None or not own.any() else z[own]
+            points = torch.cat([points, draw_close(frames, close, generator=generator)])
         parts = {part: points[part.start :: part.step] for part in run.processes.parts(count)}
         return {part: (at, _values(smooth, at, width=goal.shape[1])) for part, at in parts.items()}
 
@@ -87,7 +97,7 @@ def regress(
         def part(share: Share) -> Tensor:
             points, values = samples()[share.held]
             places = ((share.rows - share.held.start) // share.held.step).to(points.device)
-            return squared_error(model(points[places]), values[places])
+            return error(model(points[places]), values[places])
 
         drawn = torch.randint(count, (schedule.batch,), generator=run.generator)
         return run.processes.mean_loss(drawn, part, frames=count)
@@ -115,24 +125,24 @@ def fit_local(
     *,
     generator: torch.Generator,
     own: Tensor | None = None,  # [F] bool
-    beyond: Beyond = CLOTH,
+    fit: Fit = CLOTH,
 ) -> Smooth:
     """The smooth function of components through `goal`; with `locality` a sum over parts with views of their own."""
     z, back = components(inputs), components.back()
 
-    def fit(x: Tensor) -> Smooth:
+    def through(x: Tensor) -> Smooth:
         if own is None:
-            return fit_smoother(x, goal, generator=generator)
-        return fit_beyond(x, goal, own, beyond=beyond.noise, fades=beyond.fades, generator=generator)
+            return fit_smoother(x, goal, generator=generator, noise=fit.own)
+        return fit_beyond(x, goal, own, beyond=fit.beyond, ridge=fit.own, fades=fit.fades, generator=generator)
 
     if locality is None:
-        return fit(z)
+        return through(z)
     turns, terms = [], []
     for reach, share in zip(locality.reach, locality.shares, strict=True):
         turn = (back * reach) @ whitening(inputs * reach)
         turn = turn[:, leading(z @ turn)]
         turns.append(turn)
-        terms.append(fit(z @ turn).through(share))
+        terms.append(through(z @ turn).through(share))
     return Sum(tuple(terms), tuple(turns))
 
 
@@ -174,3 +184,8 @@ def seeded_mlp(inputs: int, hidden: int, outputs: int, *, run: Run) -> nn.Sequen
 def squared_error(predicted: Tensor, goal: Tensor) -> Tensor:
     """Squared error summed over coordinates: 1 minus the explained variance where the goal has unit energy."""
     return (predicted - goal).square().sum(1).mean()
+
+
+def absolute_error(predicted: Tensor, goal: Tensor) -> Tensor:
+    """Absolute error summed over coordinates (paper, Eq. L_coarse)."""
+    return (predicted - goal).abs().sum(1).mean()

@@ -83,11 +83,11 @@ def fit_smoother(
     targets: Tensor,  # [F, K]
     *,
     generator: torch.Generator,
-    noise: Tensor | None = None,  # [F] noise variance of each frame's value; None: RIDGE
+    noise: Tensor | float = RIDGE,  # [F] noise variance of each frame's value, or one for all
     width: float | None = None,  # squared width of the kernel; None: from the frames
 ) -> Smoother:
     """The smooth function that approximates `targets` at `x`."""
-    noise = torch.full_like(x[:, 0], RIDGE) if noise is None else noise
+    noise = torch.as_tensor(noise, dtype=x.dtype, device=x.device).expand(len(x))
     chosen = torch.randperm(len(x), generator=generator)[:CENTRES].sort().values.to(x.device)
     centres = x[chosen]
     width = width or WIDTH * spread(x) or 1.0
@@ -113,6 +113,7 @@ def fit_beyond(
     *,
     beyond: float,  # noise variance of other frames' values
     generator: torch.Generator,
+    ridge: float = RIDGE,  # noise variance of what the user's frames show besides
     fades: bool = True,  # whether it fades to the mean of the frames that are not the user's
 ) -> Sum:
     """A heavily smoothed function of all frames, plus the residual of the user's frames, which fades away from them.
@@ -130,7 +131,7 @@ def fit_beyond(
         return common
     reach = spread(x[own]) or 1.0
     width = math.sqrt(around.width * WIDTH * reach)  # wide, yet not so wide that small motion is flat within it
-    besides = fit_smoother(x[own], targets[own] - common(x[own]), generator=generator, width=width)
+    besides = fit_smoother(x[own], targets[own] - common(x[own]), generator=generator, noise=ridge, width=width)
     return Sum((*common.terms, replace(besides, reach=reach)))
 
 

@@ -287,7 +287,7 @@ def start_branch(
         expand=targets.expand,
         locality=local,
         own=None if frames is None else frames == 1,
-        beyond=LIGHT if light else CLOTH,
+        fit=LIGHT if light else CLOTH,
         hidden=settings.hidden,
         schedule=settings.regression,
         stage=stage,
