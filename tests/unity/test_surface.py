@@ -43,10 +43,11 @@ from mua.player.surface import surface_mesh
 SCREEN = (160, 200)
 GAMMA = ("UNITY_COLORSPACE_GAMMA",)
 FRAME = 3  # of a clip of 24 Hz
-PLACE = (0.35, 0.1, -0.2, 0.1, 0.5, -0.1, 0.85446, 0.9)  # Unity's position, then rotation (x, y, z, w), then size
+PLACE = (0.35, 0.1, -0.2, 0.1, 0.5, -0.1, 0.85446, 0.8)  # Unity's position, then rotation (x, y, z, w), then size
 PASSES = ("Geometry", "Template", "Skeleton", "ShadowCaster")
 VIEWS = PASSES[:3]
 MAP = 512  # pixels along a shadow map
+SUBPIXELS = 256  # to which the software device rounds places, along a pixel: its subPixelPrecisionBits are 8
 STEEPEST = 2.3  # of light over sRGB, near white
 METRES = 4.0  # that it spans
 
@@ -314,7 +315,8 @@ def test_shadows_are_cast_by_the_posed_template_in_unitys_world(painter: Painter
     """A light along each axis: its depths are a coordinate of every vertex, its pixels the two others."""
     world = placed(posed(painter.scene.avatar).mesh) * [-1, 1, 1]
     clip = np.column_stack([world, np.ones(len(world))]) @ light_from(axis, METRES).T
-    column, row = ((clip[:, :2] * [1, -1] + 1) / 2 * MAP).astype(int).T
+    pixels = np.rint((clip[:, :2] * [1, -1] + 1) / 2 * MAP * SUBPIXELS) / SUBPIXELS
+    column, row = np.ceil(pixels).astype(int).T - 1  # a point on the edge of two belongs to the one before it
     depths = shadow_depths(painter, light_from(axis, METRES))
     assert len(world) // 2 < np.count_nonzero(depths) <= len(world)
     nearest = np.array([clip[(column == c) & (row == r), 2].max() for c, r in zip(column, row, strict=True)])
