@@ -231,22 +231,37 @@ def test_a_component_is_scrubbed_in_its_inspector(story: Story, tmp_path: Path) 
     reported = story("Scrubs", path)
     last = len(avatar.clips[0]) - 1
     first, chosen, scrubbed, again, playing, _, failed = (line for [line] in reported["gui"])
-    assert first == f"popup wave of wave, nod; slider 0 of 0 to {last}"
+    assert first == f"popup wave of wave, nod; button Play; slider 0 of 0 to {last}"
     assert chosen == first
     assert reported["clip"] == [["1", "True"]]
-    assert scrubbed == f"popup nod of wave, nod; slider 0 of 0 to {last}"
+    assert scrubbed == f"popup nod of wave, nod; button Play; slider 0 of 0 to {last}"
     assert again == scrubbed.replace("slider 0", "slider 3")
     assert reported["asked"] == [["1", "1"]] * 2  # of the editor that does not play: a frame and its picture, once
     assert reported["frame"] == [["3"]]
     assert reported["playing"] == [["False"]]
     outside = 100 * outside_of_training(path, 3)
     assert playing.split("; ")[1:] == [
-        "toggle Playing True",
+        "button Pause",
         f"slider 3 of 0 to {last}",
         f"value Outside Training: {outside:.0f} %",
     ]
     assert failed.startswith("property nod; Error ")
     assert reported["alive"] == [["0"]]
+
+
+def test_a_clip_plays_in_the_scene_view_until_something_ends_it(story: Story, sound: Path) -> None:
+    """At twice its speed; nothing of the scene changes."""
+    reported = story("Previews", sound)
+    ends = ["pause", "deselected", "play mode", "no avatar", "destroyed"]
+    assert [[end, done] for end, done, _ in reported["ended"]] == [[end, "True"] for end in ends]
+    seconds = [float(second) for second, _ in reported["plays"]]
+    assert seconds[:3] == pytest.approx([0.125, 0.25, 0.375], abs=1e-6)
+    assert [repaints for _, repaints in reported["plays"]] == ["True"] * 5
+    assert [float(ended[2]) for ended in reported["ended"][:2]] == pytest.approx(seconds[:2])
+    assert reported["saved"] == [["True", "0"]]
+    frames = [line.split("slider ")[1].split(" ")[0] for [line] in reported["gui"][1:3]]
+    assert frames == ["3", "3"]  # at 24 Hz
+    assert (reported["log"], reported["alive"]) == ([], [["0"]])
 
 
 def test_several_components_have_no_clip_in_common_to_scrub(story: Story, sound: Path) -> None:

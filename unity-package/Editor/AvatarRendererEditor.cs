@@ -6,7 +6,10 @@ using UnityEngine;
 
 namespace Mua.Editor
 {
-    /// <summary>The fields of an AvatarRenderer, how far it has come, what is wrong, and its clip to scrub through.</summary>
+    /// <summary>
+    /// The fields of an AvatarRenderer, how far it has come, what is wrong, and its clip to play and to scrub through, in
+    /// the scene view too while the editor does not play.
+    /// </summary>
     [CustomEditor(typeof(AvatarRenderer)), CanEditMultipleObjects]
     internal sealed class AvatarRendererEditor : UnityEditor.Editor
     {
@@ -15,16 +18,24 @@ namespace Mua.Editor
             "Share of the pose that the avatar's training did not show; 0 % is a pose like those of training.");
 
         private SerializedProperty clip;
+        private bool previews; // the clip in the scene view; nothing of it is saved
+        private double previewed; // seconds of the editor's clock
 
         private void OnEnable()
         {
             clip = serializedObject.FindProperty("clip");
         }
 
+        private void OnDisable() // deselected, destroyed, or before assemblies are loaded anew
+        {
+            Preview(false);
+        }
+
         public override bool RequiresConstantRepaint()
         {
             var shown = (AvatarRenderer)target;
-            return shown.State == AvatarState.Loading || (shown.State == AvatarState.Ready && Application.isPlaying);
+            return previews || shown.State == AvatarState.Loading
+                || (shown.State == AvatarState.Ready && Application.isPlaying);
         }
 
         /// <summary>The scene view asks by this name what F frames: the avatar, and not the point where it stands.</summary>
@@ -89,7 +100,7 @@ namespace Mua.Editor
             }
         }
 
-        private static void ShowState(AvatarRenderer shown)
+        private void ShowState(AvatarRenderer shown)
         {
             if (shown.Message.Length > 0)
             {
@@ -111,20 +122,58 @@ namespace Mua.Editor
             }
         }
 
-        private static void Scrub(AvatarRenderer shown)
+        private void Scrub(AvatarRenderer shown)
         {
-            if (Application.isPlaying)
+            bool plays = Application.isPlaying ? shown.IsPlaying : previews;
+            if (GUILayout.Button(plays ? "Pause" : "Play"))
             {
-                shown.IsPlaying = EditorGUILayout.Toggle("Playing", shown.IsPlaying);
+                if (Application.isPlaying)
+                {
+                    shown.IsPlaying = !plays;
+                }
+                else
+                {
+                    Preview(!plays);
+                }
             }
             EditorGUI.BeginChangeCheck();
             int frame = EditorGUILayout.IntSlider("Frame", shown.Frame, 0, shown.FrameCount - 1);
             if (EditorGUI.EndChangeCheck())
             {
                 shown.Frame = frame;
-                EditorApplication.QueuePlayerLoopUpdate(); // outside of play nothing else runs one
-                SceneView.RepaintAll();
+                Redraw();
             }
+        }
+
+        private void Preview(bool plays)
+        {
+            previews = plays;
+            previewed = EditorApplication.timeSinceStartup;
+            EditorApplication.update -= Advance;
+            if (plays)
+            {
+                EditorApplication.update += Advance;
+            }
+        }
+
+        private void Advance()
+        {
+            var shown = (AvatarRenderer)target;
+            if (shown == null || shown.State != AvatarState.Ready || shown.Rig != null || Application.isPlaying)
+            {
+                Preview(false);
+                return;
+            }
+            double now = EditorApplication.timeSinceStartup;
+            shown.Seconds += shown.Speed * (now - previewed);
+            previewed = now;
+            Redraw();
+        }
+
+        private static void Redraw()
+        {
+            EditorApplication.QueuePlayerLoopUpdate(); // outside of play nothing else runs one
+            SceneView.RepaintAll();
         }
     }
 }

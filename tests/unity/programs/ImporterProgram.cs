@@ -229,7 +229,7 @@ namespace Mua.Editor
             Say("frame", shown.Frame);
             Machine.Playing(true);
             Show(inspector);
-            Gui.Answers["Playing"] = false;
+            Gui.Answers["Pause"] = true;
             Show(inspector);
             Say("playing", shown.IsPlaying);
             Machine.Playing(false);
@@ -237,6 +237,66 @@ namespace Mua.Editor
             Show(inspector);
             UnityEngine.Object.DestroyImmediate(shown.gameObject);
             Say("alive", Recorder.AliveCount);
+        }
+
+        /// <summary>Plays the clip in the scene view, at twice its speed, until each of what ends that.</summary>
+        private static void Previews()
+        {
+            Place(files);
+            AvatarRenderer shown = AvatarObject.Create(AvatarObject.Find(), null, Vector3.zero).GetComponent<AvatarRenderer>();
+            shown.Speed = 2;
+            string saved = Saved(shown);
+            var inspector = Inspectors.Open<AvatarRendererEditor>(shown);
+            foreach (string end in new[] { "pause", "deselected", "play mode", "no avatar", "destroyed" })
+            {
+                Gui.Answers["Play"] = true;
+                Show(inspector);
+                Tick(0.0625f);
+                Show(inspector);
+                Say("plays", shown.Seconds, inspector.RequiresConstantRepaint());
+                switch (end)
+                {
+                    case "pause":
+                        Gui.Answers["Pause"] = true;
+                        Show(inspector);
+                        break;
+                    case "deselected":
+                        Messages.Send(inspector, "OnDisable");
+                        break;
+                    case "play mode":
+                        Machine.Playing(true);
+                        break;
+                    case "no avatar":
+                        Say("saved", Saved(shown) == saved, Dialogs.Dirtied.Count);
+                        shown.Load((AvatarAsset)null);
+                        break;
+                    default:
+                        UnityEngine.Object.DestroyImmediate(shown.gameObject);
+                        break;
+                }
+                Tick(0.0625f);
+                Machine.Playing(false);
+                Say("ended", end, EditorApplication.update == null, shown == null ? 0 : shown.Seconds);
+                if (end == "no avatar")
+                {
+                    shown.Load(AvatarObject.Find());
+                }
+            }
+            Say("alive", Recorder.AliveCount);
+        }
+
+        /// <summary>What the scene keeps of a component.</summary>
+        private static string Saved(AvatarRenderer shown)
+        {
+            return string.Join(" ", typeof(AvatarRenderer).GetFields(BindingFlags.Instance | BindingFlags.NonPublic)
+                .Where(field => Attribute.IsDefined(field, typeof(SerializeField))).Select(field => field.GetValue(shown)));
+        }
+
+        private static void Tick(float seconds)
+        {
+            EditorApplication.update?.Invoke();
+            PlayerLoop.Frame(seconds);
+            EditorApplication.update?.Invoke();
         }
 
         /// <summary>The inspector of two components at once.</summary>

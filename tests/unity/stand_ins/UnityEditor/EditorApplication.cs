@@ -8,6 +8,7 @@ namespace UnityEditor
         public static CallbackFunction update;
         public static CallbackFunction delayCall;
 
+        public static double timeSinceStartup { get { return UnityEngine.Time.timeAsDouble; } }
         public static bool isPlayingOrWillChangePlaymode { get { return false; } }
         public static void QueuePlayerLoopUpdate() { StandIns.Asked.Updates++; }
         public static void Exit(int returnValue) { throw new System.OperationCanceledException("exit " + returnValue); }

@@ -47,11 +47,6 @@ namespace UnityEditor
             Gui.Write("popup", displayedOptions[selectedIndex] + " of " + string.Join(", ", displayedOptions));
             return Gui.Answer(label, selectedIndex);
         }
-        public static bool Toggle(string label, bool value, params GUILayoutOption[] options)
-        {
-            Gui.Write("toggle", label + " " + value);
-            return Gui.Answer(label, value);
-        }
         public static int IntSlider(string label, int value, int leftValue, int rightValue, params GUILayoutOption[] options)
         {
             Gui.Write("slider", value + " of " + leftValue + " to " + rightValue);

@@ -30,6 +30,11 @@ namespace UnityEngine
 
     public static class GUILayout
     {
+        public static bool Button(string text, params GUILayoutOption[] options)
+        {
+            StandIns.Gui.Write("button", text);
+            return StandIns.Gui.Answer(text, false);
+        }
         public static GUILayoutOption Width(float width) { return new GUILayoutOption(); }
         public static GUILayoutOption ExpandWidth(bool expand) { return new GUILayoutOption(); }
     }
