@@ -1,6 +1,7 @@
 """Meshes of a capture: read, refused, and what mua-teach makes of them."""
 
 import json
+import shutil
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
@@ -18,12 +19,13 @@ from taught import FEW
 import mua
 from mua.arrays import Array
 from mua.baking import teacher_stages
-from mua.capture import open_capture
+from mua.capture import Capture, open_capture
 from mua.errors import InputError
 from mua.kernels.dq_skinning import blend_vertices
 from mua.rig.bones import PERSON
 from mua.rotation import dual_transform
 from mua.teachers.trained import measured, settings
+from mua.teachers.trained.drivable_template import Undeformed
 from mua.teachers.trained.folder import load_teacher
 from mua.teachers.trained.measured import MeasuredSurfaces, measured_surfaces, read_surface, unit_of
 from mua.teachers.trained.motion_deformation import MotionDeformation
@@ -166,7 +168,9 @@ def test_no_more_surfaces_are_held_than_there_is_room_for(tmp_path: Path, monkey
         surfaces.observe(0, generator)
 
 
-def test_a_capture_with_meshes_trains_how_the_template_deforms(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.fixture
+def measured_capture(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Capture:
+    """A capture with meshes, and trainings of a few steps."""
     monkeypatch.setitem(settings.PRESETS, "tiny", FEW)
     few = Schedule(steps=2, batch=1, lr=1e-2)
     monkeypatch.setattr(teacher_stages, "TEMPLATE", TemplateSettings(nodes=few, offsets=few, samples=300))
@@ -178,15 +182,30 @@ def test_a_capture_with_meshes_trains_how_the_template_deforms(tmp_path: Path, m
     for clip in capture.clips:
         for frame in range(clip.frames):
             write_ply(capture.place(said["meshes"], clip=clip.name, frame=frame), CORNERS)
-    model, described = load_teacher(mua.teach(folder, output=tmp_path / "teacher", steps=1, texels=64, drivable=True))
+    return capture
+
+
+def test_a_capture_with_meshes_trains_how_the_template_deforms(measured_capture: Capture, tmp_path: Path) -> None:
+    folder = measured_capture.folder
+    model, described = load_teacher(mua.teach(folder, output=tmp_path / "teacher", steps=1, texels=64))
+    assert described.settings.drivable is True
     deformation = model.template.deformation
     assert isinstance(deformation, MotionDeformation)
     rest = torch.as_tensor(model.rig.mesh.vertices).float()
     assert (deformation(torch.zeros(1, described.encoding.width)) - rest).abs().max() > 1e-6
     still = TrainedTeacher(tmp_path / "teacher", moving=False).model.template.deformation
     torch.testing.assert_close(still(torch.zeros(1, 1))[0], rest)
-    training = next(clip for clip in capture.clips if not clip.held_out)
-    missing = capture.place(said["meshes"], clip=training.name, frame=1)
+
+
+def test_a_missing_mesh_is_named(measured_capture: Capture, tmp_path: Path) -> None:
+    training = next(clip for clip in measured_capture.clips if not clip.held_out)
+    missing = measured_capture.place(str(measured_capture.meshes), clip=training.name, frame=1)
     missing.unlink()
     with pytest.raises(InputError, match=f"{missing.name}: there is no such file"):
-        mua.teach(folder, output=tmp_path / "other", steps=1, texels=64, drivable=True)
+        mua.teach(measured_capture.folder, output=tmp_path / "teacher", steps=1, texels=64)
+
+
+def test_meshes_can_be_left_out_of_the_training(measured_capture: Capture, tmp_path: Path) -> None:
+    shutil.rmtree(measured_capture.folder / "meshes")
+    teacher = mua.teach(measured_capture.folder, output=tmp_path / "teacher", steps=1, texels=64, drivable=False)
+    assert isinstance(load_teacher(teacher)[0].template.deformation, Undeformed)

@@ -40,6 +40,8 @@ def carry_out(
     """Train the teacher of a capture and write it to `output`; the first of several processes writes and reports."""
     listener.stage("capture")
     capture = open_capture(folder)
+    if settings.drivable is None:
+        settings = replace(settings, drivable=capture.meshes is not None)
     for sentence in missing_files(capture):
         listener.note(f"{sentence} Views without image or mask count nowhere.")
     filmed = read_filmed(capture, settings, device, views=output / "work" / "views")

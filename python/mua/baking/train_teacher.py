@@ -31,7 +31,10 @@ def teach(
     ] = "tiny",
     steps: Annotated[int | None, Option("Number of training steps.", default="set by the preset", least=1)] = None,
     texels: TexelsOption = None,
-    drivable: Annotated[bool, Option("Fit first how motion deforms the template, to meshes or masks.")] = False,
+    drivable: Annotated[
+        bool | None,
+        Option("Fit first how motion deforms the template, to meshes or masks.", default="where there are meshes"),
+    ] = None,
     colour_correction: Annotated[
         bool, Option("Fit how cameras differ in colour; without, all are taken to show colours alike.")
     ] = True,

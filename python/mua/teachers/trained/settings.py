@@ -37,7 +37,7 @@ class TeacherSettings:
     code: int = 0  # values of a frame's look, for one pose that looks several ways; 0: looks differ by pose alone
     refine: float = 0.0  # degrees by which a joint of a frame may be turned to fit the images
     colour_correction: bool = True  # whether cameras may differ in colour
-    drivable: bool = False  # whether motion deforms the template, or its skin alone
+    drivable: bool | None = None  # whether motion deforms the template; None: where the capture has meshes
     weights: LossWeights = field(default_factory=LossWeights)
     rasteriser: Rasteriser = "mua"  # what draws the images in training
     seed: int = 0
