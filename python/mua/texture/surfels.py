@@ -10,6 +10,7 @@ from mua import rotation
 from mua.arrays import Array
 from mua.rig.character import Mesh
 from mua.rig.surface_points import interpolate
+from mua.texture.ends import end_at_surface
 from mua.texture.footprints import (
     TexelPoints,
     local_normals,
@@ -84,13 +85,16 @@ def rest_surfels(
     extents = np.maximum((SPREAD if wanted is None else wanted.spreads[:, None]) * reach, CELL * cells)
     smooth = align_neighbours(rotation.from_matrix(frames), texels, size)
     turn, extents[:, :2] = along_lines(frames, extents[:, :2], steps=footprint, wanted=wanted)
+    turned = rotation.multiply(smooth, rotation.from_axis_angle(np.array([0.0, 0, 1]), turn))
+    centres, axes = points.places + aside, rotation.to_matrix(turned)
+    shift, extents[:, :2] = end_at_surface(mesh, samples, frames=axes, centres=centres, extents=extents[:, :2])
     extents[:, 2] = np.maximum(THINNESS * extents[:, 2], FLATNESS * extents[:, :2].min(axis=1))
     least = max(LEAST * float(np.ptp(mesh.vertices, axis=0).max()), float(np.finfo(np.float32).tiny))
     return Surfels(
-        rotations=rotation.multiply(smooth, rotation.from_axis_angle(np.array([0.0, 0, 1]), turn)),
+        rotations=turned,
         log_scales=np.log(np.maximum(extents, least)),
         smooth=smooth,
-        aside=aside,
+        aside=aside + shift,
         at_border=rims.at_border,
     )
 

@@ -1,0 +1,71 @@
+"""Surfels end where the surface does, on narrow strips and at borders; elsewhere they stay as they are."""
+
+import numpy as np
+import pytest
+
+from mua import rotation
+from mua.rig.character import Mesh
+from mua.rig.texel_map import build_texel_map
+from mua.texture.ends import AWAY, EDGE
+from mua.texture.footprints import TexelPoints
+from mua.texture.sharpness import SPREAD
+from mua.texture.surfels import Surfels, rest_surfels
+
+SIZE = 40
+SIDE = 0.005  # of a texel's square, metres
+CORNERS = np.array([[0, 0], [1, 0], [1, 1], [0, 1]])
+FACES = np.array([[0, 1, 2], [0, 2, 3]], np.int32)
+
+
+def sheet(wide: float, high: float) -> Mesh:
+    """A flat sheet of so many texels, whose lower border cuts the middle of a row of texels."""
+    flat = CORNERS * [wide, high]
+    uv = (flat + np.array([4, 20.5 - high / 2])) / SIZE
+    return Mesh(np.column_stack([flat * SIDE, np.zeros(4)]), FACES, uv, FACES)
+
+
+def surfels_of(mesh: Mesh) -> tuple[Surfels, np.ndarray]:
+    """The surfels of a mesh and their centres."""
+    texels = build_texel_map(mesh, SIZE)
+    at = texels.texels, texels.triangles, texels.barycentrics
+    found = rest_surfels(mesh, size=SIZE, texels=at[0], triangles=at[1], barycentrics=at[2])
+    return found, TexelPoints(mesh, SIZE, *at).places + found.aside
+
+
+def outlines(found: Surfels, centres: np.ndarray) -> np.ndarray:
+    """Points [N, 4, 3] where the outline of each surfel crosses its axes."""
+    axes = rotation.to_matrix(found.rotations)[:, :, :2] * np.exp(found.log_scales[:, None, :2])
+    return centres[:, None] + EDGE * np.concatenate([axes, -axes], axis=2).transpose(0, 2, 1)
+
+
+@pytest.mark.parametrize("high", [0.3, 0.5, 0.8])
+def test_surfels_on_a_narrow_strip_are_hardly_wider_than_it(high: float) -> None:
+    ends = outlines(*surfels_of(sheet(30, high)))[..., 1] / SIDE
+    beyond = AWAY / (1 - AWAY) * high / 2
+    assert ends.min() > -beyond - 0.05
+    assert ends.max() < high + beyond + 0.05
+
+
+def test_surfels_at_the_end_of_a_strip_do_not_stand_out() -> None:
+    ends = outlines(*surfels_of(sheet(20.3, 12.3))) / SIDE
+    assert ends[..., 0].max() < 20.3 + 0.4
+    assert ends[..., 1].min() > -0.4
+
+
+def test_surfels_inside_a_sheet_are_not_shortened() -> None:
+    found, centres = surfels_of(sheet(20, 20))
+    inside = (np.abs(centres[:, :2] / SIDE - 10) < 8).all(axis=1)
+    assert inside.sum() > 200
+    np.testing.assert_allclose(np.exp(found.log_scales[inside, :2]), SPREAD * SIDE, rtol=0.01)
+    assert not found.aside[inside].any()
+
+
+def test_a_seam_between_charts_is_not_an_end() -> None:
+    """Two halves of one sheet, apart in the texture: surfels reach the seam as far as without it."""
+    flat = np.array([[0, 0], [10, 0], [10, 12], [0, 12], [20, 0], [20, 12]])
+    faces = np.array([[0, 1, 2], [0, 2, 3], [1, 4, 5], [1, 5, 2]], np.int32)
+    uv = np.concatenate([flat[[0, 1, 2, 3]] + 2, flat[[1, 4, 5, 2]] + [6, 2]]) / SIZE
+    uv_faces = np.array([[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]], np.int32)
+    ends = outlines(*surfels_of(Mesh(np.column_stack([flat * SIDE, np.zeros(6)]), faces, uv, uv_faces))) / SIDE
+    left = ends[ends.mean(axis=1)[:, 0] < 10]
+    assert left[..., 0].max() > 10.1
