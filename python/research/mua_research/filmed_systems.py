@@ -13,7 +13,7 @@ from mua.avatar.decode import Splats, pose_splats
 from mua.evaluation.cost import Cost, learnt_cost
 from mua.evaluation.entries import sentence
 from mua.evaluation.filmed import FilmedEntry, Show
-from mua.evaluation.order import OURS
+from mua.evaluation.settings import OURS
 from mua.pose.clip import Clip
 from mua.pose.windows import window_of
 from mua.training.checkpoint import Checkpoints

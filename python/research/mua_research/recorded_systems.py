@@ -11,7 +11,7 @@ from mua.arrays import Array
 from mua.cli.display import Display
 from mua.evaluation.cost import learnt_cost
 from mua.evaluation.entries import Entry, Picture, sentence
-from mua.evaluation.order import ALL, EvaluationOrder
+from mua.evaluation.settings import ALL, EvaluationSettings
 from mua.recording import Recording, WholeFrame
 from mua.student.settings import preset
 from mua.training.checkpoint import Checkpoints
@@ -23,11 +23,13 @@ from mua_research.systems import SYSTEMS, train_or_restore
 from mua_research.training import prepare
 
 
-def system_entries(order: EvaluationOrder, recording: Recording, work: Path, display: Display) -> Iterator[Entry]:
-    """Train the systems of an order one after the other; those that the work directory holds are taken from there."""
-    settings = replace(preset(order.preset), texels=recording.rig.texels.size, seed=order.seed)
-    training = prepare(order, recording, settings, work, display)
-    for name in SYSTEMS if ALL in order.system else dict.fromkeys(order.system):
+def system_entries(
+    evaluation: EvaluationSettings, recording: Recording, work: Path, display: Display
+) -> Iterator[Entry]:
+    """Train the systems of a comparison one after the other; take from the work directory those that it holds."""
+    settings = replace(preset(evaluation.preset), texels=recording.rig.texels.size, seed=evaluation.seed)
+    training = prepare(evaluation, recording, settings, work, display)
+    for name in SYSTEMS if ALL in evaluation.system else dict.fromkeys(evaluation.system):
         display.stage(name)
         entry = system_entry(
             name,

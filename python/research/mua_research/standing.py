@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from mua.evaluation.filmed import SPLITS, FilmedEntry, Judged, Standing, mean
-from mua.evaluation.order import OURS
+from mua.evaluation.settings import OURS
 
 
 def standings(judged: Sequence[Judged], entries: Sequence[FilmedEntry]) -> list[Standing]:
