@@ -79,7 +79,7 @@ def test_no_option_is_forgotten() -> None:
 )
 def test_refuses_before_anything_is_loaded(output: str | None, choice: dict[str, Any], sentence: str) -> None:
     with pytest.raises(InputError) as refused:
-        view([NOWHERE], output=None if output is None else Path(output), **choice)
+        view(files=[NOWHERE], output=None if output is None else Path(output), **choice)
     assert sentence in str(refused.value)
 
 
