@@ -40,11 +40,8 @@ def system_entries(
     failures: list[str] = []
     trained = trained_entries(
         sized(names, evaluation.scale or (1.0,), training.frames.sizes),
-        training.frames,
-        budget=training.budget,
-        checkpoints=training.checkpoints,
+        training,
         begin=display.stage,
-        report=training.report,
         failed=failures.append,
     )
     entries = list(trained)

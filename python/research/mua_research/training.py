@@ -1,6 +1,5 @@
 """What the training of all systems of a comparison begins with: their frames, their budget, where results are kept."""
 
-from dataclasses import dataclass
 from pathlib import Path
 
 import torch
@@ -10,19 +9,9 @@ from mua.evaluation.settings import EvaluationSettings
 from mua.recording import Recording
 from mua.student.settings import Settings
 from mua.training.checkpoint import Checkpoints, run_key
-from mua.training.optimise import Progress, Report, Run
+from mua.training.optimise import Progress, Run
 from mua_research.motion import training_frames
-from mua_research.system import Budget, TrainingFrames
-
-
-@dataclass(frozen=True, eq=False)
-class Training:
-    """What every system of a comparison is trained with."""
-
-    frames: TrainingFrames
-    budget: Budget
-    checkpoints: Checkpoints
-    report: Report
+from mua_research.system import Budget, Training
 
 
 def prepare(
