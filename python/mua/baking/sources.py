@@ -74,7 +74,7 @@ def load_clips(
     notes: list[str] = []
     for path in motions:
         for loaded in load_motions(
-            path, character.skeleton, mapping=mapping, rate=RATE, said=character.roles, feet=feet
+            path, character.skeleton, mapping=mapping, rate=RATE, roles=character.roles, feet=feet
         ):
             quality = measure_motion(loaded.source, character.skeleton, loaded.clip, loaded.matches)
             clips.append(loaded.clip)

@@ -71,9 +71,9 @@ def _key(filmed: Filmed, settings: TeacherSettings, weights: Path | None, materi
     skin = (rig.mesh.vertices, rig.mesh.faces, rig.skin_indices, rig.skin_weights, rig.skeleton.bind_inverse)
     poses = [values for clip in filmed.clips for values in (clip.rotations, clip.translations)]
     points = [values for of in material.tracks for values in (*vars(of.tracks).values(), of.texels)]
-    said = filmed.capture.file.read_bytes()
+    description = filmed.capture.file.read_bytes()
     return run_key(
-        (settings, said, None if weights is None else sha256(weights.read_bytes()).hexdigest()),
+        (settings, description, None if weights is None else sha256(weights.read_bytes()).hexdigest()),
         [filmed.subject.surfels, *map(torch.as_tensor, (*skin, *poses)), *(one for one in points if one is not None)],
     )
 

@@ -26,11 +26,11 @@ def compare(settings: EvaluationSettings) -> None:
     entries += [filmed.avatar_entry(path, template) for path in settings.avatars]
     console = printer()
     with DirectoryLock(work, name=f"-o {settings.output}"), Display(console) as display:
-        said: list[str] = []
+        training: list[str] = []
         if settings.system:
             from mua_research.filmed_training import system_entries  # because only a checkout has it
 
-            systems, said = system_entries(settings, capture, work, display)
+            systems, training = system_entries(settings, capture, work, display)
             entries = [*entries, *systems]
         display.stage("images")
         looked_at = _looked_at(settings, capture, chosen, entries, lpips, display)
@@ -38,7 +38,7 @@ def compare(settings: EvaluationSettings) -> None:
     if not judged:
         raise InputError(f"{capture.file}: nobody is seen in any of the {len(chosen)} views by cameras with held_out")
     about = [f"{len(judged)} images of {capture.name}, inside the box around the mask, over white."]
-    about += [*filmed_report.nobody_there([one.shot for one in looked_at if not one.scores]), *said]
+    about += [*filmed_report.nobody_there([one.shot for one in looked_at if not one.scores]), *training]
     found: list[filmed.Standing] = []
     plots: dict[str, bytes] = {}
     if any(one.system for one in entries):

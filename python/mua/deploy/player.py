@@ -117,9 +117,9 @@ def answers(lines: Iterable[str], mark: str, run: str) -> Iterator[str]:
     """The player's answers in this run, without the mark and the run."""
     begin = f"{mark} {run} "
     for line in lines:
-        _, found, said = line.partition(begin)
+        _, found, answer = line.partition(begin)
         if found:
-            yield said.strip()
+            yield answer.strip()
 
 
 def message(line: str) -> str:

@@ -172,7 +172,7 @@ def _work_off(crew: _Crew, left: list[int], progress: Callable[[int, int], None]
         if kind == RECORDED and worker.part is not None:
             crew.done[worker.part] = value
             progress(sum(crew.done.values()), len(crew.workers))
-        if kind == ENDED:  # also said once when a worker is ready
+        if kind == ENDED:  # also sent once when a worker is ready
             running -= worker.part is not None
             worker.part = waiting.pop(0) if waiting else None
             worker.idle = worker.part is None

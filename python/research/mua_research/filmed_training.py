@@ -23,7 +23,7 @@ from mua_research.training import prepare
 def system_entries(
     evaluation: EvaluationSettings, capture: Capture, work: Path, display: Display
 ) -> tuple[list[FilmedEntry], list[str]]:
-    """The systems at their sizes, and what is said of them.
+    """The systems at their sizes, and sentences about their training.
 
     Errors: InputError where the recording to train on is of another character than the capture's.
     """
@@ -46,12 +46,12 @@ def system_entries(
     )
     entries = list(trained)
     length = f"{evaluation.seconds:g} s" if evaluation.steps is None else f"{evaluation.steps} steps"
-    said = [
+    sentences = [
         f"Systems were trained for {length} each on {len(training.frames)} frames of the teacher at {settings.texels} "
         f"texels, at sizes relative to preset {evaluation.preset}, and at the largest that cost no more than ours.",
         "M parameters and MFLOP: of what turns a pose into a texture and a mesh; posing and drawing are left out.",
     ]
-    return entries, [*said, *(f"Failed: {sentence}" for sentence in failures)]
+    return entries, [*sentences, *(f"Failed: {sentence}" for sentence in failures)]
 
 
 def _record(teacher: Path, capture: Capture, frames: int, work: Path, display: Display) -> Recording:
