@@ -75,7 +75,7 @@ def _avatars(
 
 
 def _write(output: Path, results: list[scores.Result], setting: report.Setting) -> list[str]:
-    """All figures, each file whole or as it was; the names of the files."""
+    """Write all figures, each file atomically; returns the names of the files."""
     contents = {
         "results.md": report.markdown(results, setting).encode(),
         "results.csv": report.as_csv(results).encode(),

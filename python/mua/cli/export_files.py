@@ -70,7 +70,7 @@ def parse_numbers(text: str, clip: Clip) -> range:
 
 
 def _frames(output: Path, kind: Kind, source: Source, frames: str | None) -> ExportFrames:
-    """The frames to export; what retargeting has to tell goes to standard error."""
+    """The frames to export; notes of the retargeting go to standard error."""
     mapping = None if source.mapping is None else read_mapping(source.mapping)
     avatar = read(source.file)
     clips, notes = player_clips(avatar, source.file, motion=source.motion, mapping=mapping)

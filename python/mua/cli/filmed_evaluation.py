@@ -80,7 +80,7 @@ def _write(
     found: Sequence[filmed.Standing],
     plots: Mapping[str, bytes],  # by name of their files
 ) -> list[str]:
-    """All figures, each file whole or as it was; the names of the files."""
+    """Write all figures, each file atomically; returns the names of the files."""
     contents = {
         "results.md": filmed_report.markdown(judged, entries, about).encode(),
         "results.csv": filmed_report.as_csv(judged).encode(),

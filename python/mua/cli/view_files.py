@@ -90,7 +90,7 @@ def _levels(avatar: Avatar, look: Look) -> Levels:
 
 
 def _chosen(avatar: Avatar, source: Source) -> Clip:
-    """The clip to show; what retargeting has to tell goes to standard error."""
+    """The clip to show; notes of the retargeting go to standard error."""
     file = source.files[0]
     clips, notes = player_clips(avatar, file, motion=source.motion, mapping=source.mapping)
     for note in notes:

@@ -48,7 +48,7 @@ def bench(headset: Headset, avatar: str, *, seconds: int, rate: int) -> Benched:
     Errors: InputError if the player cannot, or if no figures came from it.
     """
     run = new_run()
-    model = headset.tell("getprop", "ro.product.model")
+    model = headset.run("getprop", "ro.product.model")
     arguments = ("-muaBench", avatar, "-muaSeconds", str(seconds))
     with (
         steady(headset, rate),

@@ -1,4 +1,4 @@
-"""Videos and animations from images, written whole or not at all."""
+"""Videos and animations from images, written atomically."""
 
 from collections.abc import Iterator
 from contextlib import suppress
