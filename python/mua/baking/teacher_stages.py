@@ -6,6 +6,7 @@ from pathlib import Path
 
 import torch
 
+from mua.asset.storable import require_names
 from mua.baking.listener import Listener
 from mua.capture import open_capture
 from mua.capture.inventory import missing_files
@@ -40,6 +41,8 @@ def carry_out(
     """Train the teacher of a capture and write it to `output`; the first of several processes writes and reports."""
     listener.stage("capture")
     capture = open_capture(folder)
+    clips = [clip.name for clip in capture.clips]
+    require_names(str(capture.file), [capture.name], capture.surfaces.skeleton.names, clips)
     for sentence in missing_files(capture):
         listener.note(f"{sentence} Views without image or mask count nowhere.")
     filmed = read_filmed(capture, settings, device, views=output / "work" / "views")
