@@ -45,7 +45,7 @@ uint packHalves(float2 values)
     return f32tof16(values.x) | (f32tof16(values.y) << 16);
 }
 
-// Two half floats in a word; beyond the largest half float the value is held there.
+// Two half floats in a word, clamped to the largest half float.
 uint packBounded(float2 values)
 {
     return packHalves(clamp(values, -LARGEST_HALF, LARGEST_HALF));

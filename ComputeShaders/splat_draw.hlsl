@@ -7,7 +7,7 @@
 //
 // In place of the Gaussian a window of the same integral is drawn, whose quad has a third of the area that lies within
 // alpha = 1/255, and which costs no exponential; it ends at REACH deviations, where its quad does. What it takes from one splat
-// it gives to the next: tens of splats lie over one another. A pixel's own variance, 1/12 along any line, is added whole.
+// it gives to the next: tens of splats lie over one another. A pixel's own variance, 1/12 along any line, is added in full.
 // The root is the symmetric one: it changes little where the covariance does, also of round ellipses, whose axes are any.
 //
 // Six vertices a splat, two triangles, in the order of the sort: back to front. Blend One, OneMinusSrcAlpha.
@@ -19,11 +19,11 @@
 #include "common.hlsl"
 
 #ifndef LEAST_DEPTH
-#define LEAST_DEPTH 0.0 // of clip z / w; an includer for OpenGL says -1
+#define LEAST_DEPTH 0.0 // of clip z / w; an includer for OpenGL defines -1
 #endif
 
 #ifndef SHADE
-#define SHADE float // of what a fragment computes; an includer says half where that is enough, and faster on mobile devices
+#define SHADE float // type of what a fragment computes; an includer defines half where that is enough, and faster on mobile devices
 #define SHADE2 float2
 #define SHADE3 float3
 #define SHADE4 float4

@@ -63,9 +63,9 @@ def messages(compiler: Compiler, path: Path, entry: str, stage: str) -> list[str
     defines = sources.kernels(sources.read(path)).get(entry, ())
     with tempfile.TemporaryDirectory() as scratch:
         done = shader_compilers.run_compiler(compiler, path, entry, stage, Path(scratch) / "code", defines)
-    said = [line.strip() for line in (done.stdout + done.stderr).splitlines()]
-    found = [line for line in said if MESSAGE.search(line) and not UNKNOWN_PRAGMA.search(line)]
-    return found if found or done.returncode == 0 else [f"status {done.returncode}", *said[:1]]
+    lines = [line.strip() for line in (done.stdout + done.stderr).splitlines()]
+    found = [line for line in lines if MESSAGE.search(line) and not UNKNOWN_PRAGMA.search(line)]
+    return found if found or done.returncode == 0 else [f"status {done.returncode}", *lines[:1]]
 
 
 def compile_all(found: list[Compiler], console: Console) -> dict[tuple[str, str, str], list[str]]:
@@ -80,8 +80,8 @@ def compile_all(found: list[Compiler], console: Console) -> dict[tuple[str, str,
 def table(results: dict[tuple[str, str, str], list[str]], found: list[Compiler]) -> Table:
     shown = Table("file", "entry point", *(f"{compiler.name}\n{compiler.version}" for compiler in found), box=SIMPLE)
     for file, entry in dict.fromkeys((file, entry) for file, entry, _ in results):
-        said = [results[file, entry, compiler.name] for compiler in found]
-        shown.add_row(file, entry, *("ok" if not lines else f"[red]{len(lines)} messages" for lines in said))
+        messages = [results[file, entry, compiler.name] for compiler in found]
+        shown.add_row(file, entry, *("ok" if not lines else f"[red]{len(lines)} messages" for lines in messages))
     return shown
 
 

@@ -56,7 +56,7 @@ class Run:
     status: int
     seconds: float
     megabytes: float  # at its most
-    said: str  # its last line
+    last_line: str
 
 
 def read_manifest(path: Path = MANIFEST) -> tuple[Entry, ...]:
@@ -75,8 +75,8 @@ def run(arguments: list[str], log: Path) -> Run:
     """Run mua-bake with these arguments; all it says goes to `log`."""
     command = [sys.executable, "-c", "from mua.cli.bake import run; run()", *arguments]
     begun = time.monotonic()
-    with log.open("wb") as said:
-        child = subprocess.Popen(["timeout", str(SECONDS), *command], stdout=said, stderr=subprocess.STDOUT)
+    with log.open("wb") as output:
+        child = subprocess.Popen(["timeout", str(SECONDS), *command], stdout=output, stderr=subprocess.STDOUT)
         _, status, usage = os.wait4(child.pid, 0)
         child.returncode = os.waitstatus_to_exitcode(status)
     lines = log.read_text(errors="replace").strip().splitlines() or [""]
@@ -97,12 +97,12 @@ def look_at(entry: Entry, folder: Path, out: Path, *, bake: bool) -> dict[str, A
     if "check" not in row:
         figures = out / f"{entry.name}_check.json"
         done = run([*given, "--check", "--json", str(figures)], out / f"{entry.name}_check.log")
-        row |= {"check": vars(done), "failed": done.said if done.status else ""}
+        row |= {"check": vars(done), "failed": done.last_line if done.status else ""}
         if not done.status:
             row |= checked(json.loads(figures.read_text()))
     if bake and row.get("clips") and not row["failed"] and "bake" not in row:  # without motion there is nothing to bake
         done = run([*given, "--frames", str(FRAMES)], out / f"{entry.name}_bake.log")
-        row |= {"bake": vars(done), "failed": done.said if done.status else ""}
+        row |= {"bake": vars(done), "failed": done.last_line if done.status else ""}
         if not done.status:
             row |= baked(out, entry.name)
     kept.write_text(json.dumps(row, indent=1))
@@ -144,8 +144,8 @@ def table(entries: Iterable[Entry], rows: Iterable[dict[str, Any]]) -> str:
     for entry, row in pairs:
         lines.append("| " + " | ".join(_cells(entry, row)) + " |")
         if not good(row):
-            said = [row.get("failed", ""), entry.expected, *row.get("warnings", [])[:2]]
-            notes.append(f"- {entry.name}: {' '.join(sentence for sentence in said if sentence)}")
+            words = [row.get("failed", ""), entry.expected, *row.get("warnings", [])[:2]]
+            notes.append(f"- {entry.name}: {' '.join(sentence for sentence in words if sentence)}")
     count = sum(good(row) for _, row in pairs)
     ending = f"{count} of {len(pairs)} reach {GOOD_IOU:.2f} and {GOOD_PSNR:.0f} dB in every pose."
     return "\n".join([*lines, "", ending, "", *notes, ""])

@@ -1,21 +1,18 @@
 """Write python/mua/web/wgsl, every kernel and draw for browsers; --check says whether it is up to date.
 
 A file of ComputeShaders or of the desktop player becomes an ES module with an object for each entry point: its WGSL,
-and what it binds by name. From which texts each was made is always compared, which needs no compiler. The code is
-compared where this machine has the compiler of the index, as another version of it may make other code.
+and what it binds by name.
 """
 
-import argparse
 import json
 import re
-import sys
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 import checkout  # noqa: F401
-import shader_compilers
 from check_shaders import entry_points
+from compiled_folder import CompiledFolder
 from wgsl_compile import OPTIONS, Shader, translate
 
 from mua.errors import InputError
@@ -24,8 +21,6 @@ from mua.gpu.reflect import BufferSlot, Constant, Interface
 
 ROOT = Path(__file__).resolve().parents[1]
 FOLDER = ROOT / "python" / "mua" / "web" / "wgsl"
-INDEX = "index.json"
-ABOUT = "written by tools/gen_wgsl.py"
 HEADER = "// Generated from {} by tools/gen_wgsl.py; do not edit.\n"
 OBJECT = """
 /** @type {{import("../shader.js").Shader}} */
@@ -46,14 +41,14 @@ def sources() -> dict[str, str]:
     return {f"{stem}.js": compiled.digest(digests, tuple(OPTIONS)) for stem, digests in texts.items()}
 
 
-def modules() -> dict[str, str]:
-    """The text of each module, translated now; raises InputError where slangc is absent or refuses."""
+def modules() -> dict[str, bytes]:
+    """Each module, translated now; raises InputError where slangc is absent or refuses."""
     found: dict[str, str] = {}
     for path, entry, stage in entry_points():
         header = HEADER.format(path.relative_to(ROOT).as_posix())
         name = f"{path.stem}.js"
         found[name] = found.get(name, header) + as_object(translate(path, entry, stage))
-    return found
+    return {name: text.encode() for name, text in found.items()}
 
 
 def as_object(shader: Shader) -> str:
@@ -84,58 +79,7 @@ def interface_of(described: dict[str, Any]) -> Interface:
     )
 
 
-def faults(folder: Path) -> list[str]:
-    """Files of the folder that are out of date, a line each."""
-    index, wanted = read_index(folder), sources()
-    made_from, there = index["made from"], {path.name for path in folder.glob("*.js")}
-    found = [f"{name} was made from another text" for name in wanted if made_from.get(name) != wanted[name]]
-    found += [f"{name} is missing" for name in sorted(wanted.keys() - there)]
-    found += [f"{name} belongs to no shader" for name in sorted((there | made_from.keys()) - wanted.keys())]
-    if found or signature() != index["compiler"]:
-        return found
-    made = modules().items()
-    return [f"{name} is not what the compiler makes" for name, text in made if (folder / name).read_text() != text]
-
-
-def read_index(folder: Path) -> dict[str, Any]:
-    content: dict[str, Any] = json.loads((folder / INDEX).read_text())
-    return content
-
-
-def signature() -> str:
-    """Name and version of the compiler of this machine."""
-    compiler = shader_compilers.find("slang")
-    return "no compiler" if compiler is None else f"{compiler.name} {compiler.version}"
-
-
-def write(folder: Path) -> None:
-    """Translate everything; raises InputError where the compiler is absent or refuses."""
-    made = modules()
-    folder.mkdir(exist_ok=True)
-    for path in folder.glob("*.js"):
-        if path.name not in made:
-            path.unlink()
-    for name, text in made.items():
-        (folder / name).write_text(text)
-    index = {"about": ABOUT, "compiler": signature(), "made from": sources()}
-    (folder / INDEX).write_text(json.dumps(index, indent=1) + "\n")
-
-
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--check", action="store_true", help="exit 1 where a committed file differs")
-    if not parser.parse_args().check:
-        try:
-            write(FOLDER)
-        except InputError as error:
-            sys.exit(f"error: {error}")
-        return
-    if wrong := faults(FOLDER):
-        sys.exit("\n".join([*wrong, f"{FOLDER.relative_to(ROOT)} is out of date: run tools/gen_wgsl.py"]))
-    here, made_by = signature(), read_index(FOLDER)["compiler"]
-    if here != made_by:
-        print(f"translated code was not compared: it is of {made_by}, this machine has {here}")
-
+WGSL = CompiledFolder("gen_wgsl.py", FOLDER, ".js", "slang", sources, modules)
 
 if __name__ == "__main__":
-    main()
+    WGSL.run(__doc__)

@@ -71,14 +71,14 @@ def require_same(held: dict[str, object], order: Order, folder: Path) -> None:
 def run_renderer(command: Sequence[str], *, log: Path) -> None:
     """Run the renderer and print how far it is; all else that it says goes to `log`."""
     with (
-        log.open("w") as said,
+        log.open("w") as output,
         subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as child,
     ):
         for line in child.stdout or ():
             if line.startswith("rendered "):
                 print(line.rstrip(), flush=True)
             else:
-                said.write(line)
+                output.write(line)
     if child.returncode:
         raise InputError(f"rendering ended with status {child.returncode}; {log} says why; the same command goes on")
 

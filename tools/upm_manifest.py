@@ -33,7 +33,7 @@ def _are_texts(value: Any) -> bool:
 
 HTTPS = _matches(r"https://[^\s]+")
 LINK = "an https:// address"
-# Field: what holds for its value, and how that is said. "type" is not here: it hides a package from projects.
+# Field: what holds for its value, and how a fault names it. "type" is not here: it hides a package from projects.
 FIELDS: dict[str, tuple[Callable[[Any], bool], str]] = {
     "name": (
         lambda value: _matches(NAME.pattern)(value) and len(value) <= LONGEST_NAME,

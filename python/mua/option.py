@@ -4,6 +4,7 @@ import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from inspect import Parameter, signature
+from pathlib import Path
 from types import NoneType, UnionType
 from typing import Any, ForwardRef, Literal, Union, get_args, get_origin
 
@@ -55,13 +56,23 @@ def members(kind: Any) -> tuple[Any, ...]:
     return get_args(kind) if get_origin(kind) in (Union, UnionType) else (kind,)
 
 
+def _elements(kind: Any) -> list[Any]:
+    """The types of one value, of an option that may be repeated those of each."""
+    parts = [members(get_args(member)[0]) if get_origin(member) is Sequence else (member,) for member in members(kind)]
+    return [part for several in parts for part in several]
+
+
 def takes_path(kind: Any) -> bool:
-    return os.PathLike[str] in members(kind)
+    return any(element in (Path, os.PathLike[str]) for element in _elements(kind))
 
 
 def takes_several(kind: Any) -> bool:
     """Whether an option may be repeated."""
     return any(get_origin(member) is Sequence for member in members(kind))
+
+
+def takes_numbers(kind: Any) -> bool:
+    return takes_several(kind) and float in _elements(kind)
 
 
 def _read(value: Any, name: str, kind: Any, option: Option) -> Any:
@@ -70,9 +81,13 @@ def _read(value: Any, name: str, kind: Any, option: Option) -> Any:
         return value  # the class that the reference names is not loaded yet
     if isinstance(value, Mapping) and any(get_origin(member) is Mapping for member in kinds):
         return value
+    if takes_numbers(kind):
+        return tuple(_in_range(float(finite_array(one, name, ())), name, option) for one in value)
+    if takes_several(kind) and takes_path(kind):
+        return as_paths(value, name)
     if takes_several(kind):
         number = isinstance(value, int) and not isinstance(value, bool) and int in kinds
-        return as_paths(value, name) if takes_path(kind) else as_names(str(value) if number else value, name)
+        return _known(as_names(str(value) if number else value, name), name, option)
     if takes_path(kind):
         return as_path(value, name)
     names = [choice for member in kinds if get_origin(member) is Literal for choice in get_args(member)]
@@ -81,6 +96,13 @@ def _read(value: Any, name: str, kind: Any, option: Option) -> Any:
     if int in kinds:
         return _in_range(whole_number(value, name), name, option)
     return _in_range(float(finite_array(value, name, ())), name, option) if float in kinds else value
+
+
+def _known(values: tuple[str, ...], name: str, option: Option) -> tuple[str, ...]:
+    for value in values:
+        if option.choices and value not in option.choices:
+            raise InputError(f"{_flag(name)} {value}: expected one of {', '.join(option.choices)}")
+    return values
 
 
 def _in_range(value: float, name: str, option: Option) -> float:
@@ -95,4 +117,8 @@ def _in_range(value: float, name: str, option: Option) -> float:
     else:
         expected = f"at least {low:g}" if low else "0 or more"
     shown = value if isinstance(value, int) else f"{value:g}"
-    raise InputError(f"--{name.replace('_', '-')} {shown}: expected {expected} {option.unit}".rstrip())
+    raise InputError(f"{_flag(name)} {shown}: expected {expected} {option.unit}".rstrip())
+
+
+def _flag(name: str) -> str:
+    return f"--{name.replace('_', '-')}"

@@ -203,6 +203,15 @@ def test_refused_avatar_leaves_the_earlier_file(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == [path]
 
 
+def test_refuses_names_that_no_reader_takes(tmp_path: Path) -> None:
+    avatar = synthetic_avatar()
+    clip = dataclasses.replace(avatar.clips[0], name="wa\x1blk")
+    for broken, named in (({"name": "he\x07ro"}, "its name 'he"), ({"clips": (clip,)}, "the clip 'wa")):
+        with pytest.raises(InputError, match=f"{named}.*has the control character U"):
+            write(tmp_path / "a.muaavatar", dataclasses.replace(avatar, **broken))
+    assert list(tmp_path.iterdir()) == []
+
+
 @pytest.mark.parametrize("storage", ["f32", "f16", "i8"])
 def test_a_number_that_no_player_could_read_is_named_with_file_field_and_remedy(
     tmp_path: Path, storage: Storage

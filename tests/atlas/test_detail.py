@@ -72,7 +72,7 @@ def test_parts_follow_joints_and_their_descendants() -> None:
 def test_what_the_file_says_of_a_joint_goes_before_its_name() -> None:
     surfaces = strip([0, 1, 3], joined=False)
     parts = body_parts(
-        surfaces.skeleton, surfaces.faces, surfaces.skin_indices, surfaces.skin_weights, said={"LeftHand": "head"}
+        surfaces.skeleton, surfaces.faces, surfaces.skin_indices, surfaces.skin_weights, stated={"LeftHand": "head"}
     )
     assert BODY_PARTS[parts[-1]] == "head"
 

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 from commands import process
+from gltf_files import animate, body
 from PIL import Image
 from recordings import content
 from silent import Silent
@@ -307,6 +308,19 @@ def test_motion_whose_joints_match_nothing_is_named(tmp_path: Path) -> None:
 
 def test_unknown_clip_to_store_is_named_before_anything_is_recorded(tmp_path: Path) -> None:
     assert "--clips jump: there is no such clip; expected walk, turn" in refused(tmp_path, "--clips", "jump")
+
+
+@pytest.mark.parametrize("named", ["joint", "clip"])
+def test_refuses_a_control_character_in_a_name_before_anything_is_recorded(named: str, tmp_path: Path) -> None:
+    glb, bell = body(), "be\x07ll"
+    glb.json["nodes"][1]["name"] = bell if named == "joint" else "spine"
+    turns = [[0, 0, 0, 1], [0, 0, 1, 0]]
+    animate(glb, 1, "rotation", times=[0, 1], values=turns, name=bell if named == "clip" else "wave")
+    sentence = refused(tmp_path, glb.save(tmp_path / "hero.glb"), "--preset", "tiny")
+    assert (
+        f"hero{'.glb' if named == 'joint' else ''}: the {named} 'be\\x07ll' has the control character U+0007"
+        in sentence
+    )
 
 
 @pytest.mark.long

@@ -3,7 +3,7 @@
 import pytest
 from commands import process
 
-from mua.evaluation.order import SYSTEM_NAMES
+from mua.evaluation.settings import SYSTEM_NAMES
 from mua.student.settings import PRESETS, RECIPES
 from mua_research.systems import SYSTEMS
 

@@ -21,7 +21,7 @@ import pytest
         ("train", "preset", "preview", None),
         ("train", "recipe", "closed-form", None),
         ("train", "storage", "f16", None),
-        ("view", "ipd", None, 0),
+        ("view", "ipd", None, None),
     ],
 )
 def test_an_option_that_is_left_out(command: str, option: str, default: object, least: float | None) -> None:

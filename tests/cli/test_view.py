@@ -35,7 +35,7 @@ def pixels(path: Path) -> np.ndarray:
 
 
 def test_writes_an_image_of_the_size_and_background_asked_for(avatar_file: Path, tmp_path: Path) -> None:
-    view([avatar_file], output=tmp_path / "v.png", size="40x61", background="#204060")
+    view(files=[avatar_file], output=tmp_path / "v.png", size="40x61", background="#204060")
     image = pixels(tmp_path / "v.png")
     assert image.shape == (61, 40, 3)
     np.testing.assert_array_equal(image[0, 0], [0x20, 0x40, 0x60])
@@ -52,7 +52,7 @@ def test_frames_and_angles_differ(avatar_file: Path, tmp_path: Path) -> None:
         {"look_at": "middle"},
     ]
     for i, choice in enumerate(choices):
-        view([avatar_file], output=tmp_path / f"{i}.png", size="32", clip="wave", **choice)
+        view(files=[avatar_file], output=tmp_path / f"{i}.png", size="32", clip="wave", **choice)
     images = {pixels(tmp_path / f"{i}.png").tobytes() for i in range(len(choices))}
     assert len(images) == len(choices)
 
@@ -62,13 +62,13 @@ def test_names_the_file_that_it_has_written(
     avatar_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str, written: str
 ) -> None:
     frames: dict[str, Any] = {"frames": "0:2"} if name == "v.gif" else {}
-    view([avatar_file], output=tmp_path / name, size="40x60", **frames)
+    view(files=[avatar_file], output=tmp_path / name, size="40x60", **frames)
     assert capsys.readouterr().out.startswith(f"{tmp_path}/{written}")
 
 
 def test_a_transparent_picture_shows_the_figure_alone(avatar_file: Path, tmp_path: Path) -> None:
     for name, background in (("clear", "transparent"), ("black", "black"), ("white", "white")):
-        view([avatar_file], output=tmp_path / f"{name}.png", size="40x60", background=background)
+        view(files=[avatar_file], output=tmp_path / f"{name}.png", size="40x60", background=background)
     clear, black, white = (pixels(tmp_path / f"{name}.png").astype(float) for name in ("clear", "black", "white"))
     assert clear.shape == (60, 40, 4)
     assert clear[0, 0, 3] == 0
@@ -81,7 +81,7 @@ def test_a_transparent_picture_shows_the_figure_alone(avatar_file: Path, tmp_pat
 
 @pytest.mark.parametrize("name", ["v.webm", "v.gif"])
 def test_a_transparent_video_is_clear_about_the_figure_alone(avatar_file: Path, tmp_path: Path, name: str) -> None:
-    view([avatar_file], output=tmp_path / name, size="64", frames="0:3", background="transparent")
+    view(files=[avatar_file], output=tmp_path / name, size="64", frames="0:3", background="transparent")
     alpha = video(tmp_path / name, side=64, channels=4)[..., 3]
     assert len(alpha) == 3
     assert alpha[:, 0, 0].max() == 0
@@ -92,7 +92,7 @@ def test_a_turntable_shows_one_frame_from_all_sides_and_repeats_without_a_seam(
     avatar_file: Path, tmp_path: Path
 ) -> None:
     chosen: dict[str, Any] = {"size": "48", "frame": 3, "orbit": 360.0}
-    view([avatar_file], output=tmp_path / "v.webm", turntable=True, **chosen)
+    view(files=[avatar_file], output=tmp_path / "v.webm", turntable=True, **chosen)
     pictures = video(tmp_path / "v.webm", side=48).astype(float)
     assert len(pictures) == 30  # a second
     steps = np.abs(pictures - np.roll(pictures, -1, axis=0)).mean(axis=(1, 2, 3))
@@ -111,13 +111,13 @@ def test_command_exits_with_status_one_and_keeps_an_earlier_image(avatar_file: P
 
 def test_the_device_and_the_cpu_reference_write_the_same_picture(avatar_file: Path, tmp_path: Path) -> None:
     for name, reference in (("device", False), ("reference", True)):
-        view([avatar_file], output=tmp_path / f"{name}.png", size="64x80", frame=3, reference=reference)
+        view(files=[avatar_file], output=tmp_path / f"{name}.png", size="64x80", frame=3, reference=reference)
     found, expected = (pixels(tmp_path / f"{name}.png").astype(int) for name in ("device", "reference"))
     assert np.abs(found - expected).max() <= SHADES
 
 
 def test_stereo_puts_two_different_eyes_side_by_side(avatar_file: Path, tmp_path: Path) -> None:
-    view([avatar_file], output=tmp_path / "v.png", size="40x60", stereo=True)
+    view(files=[avatar_file], output=tmp_path / "v.png", size="40x60", stereo=True)
     image = pixels(tmp_path / "v.png")
     assert image.shape == (60, 80, 3)
     left, right = image[:, :40], image[:, 40:]
@@ -126,13 +126,13 @@ def test_stereo_puts_two_different_eyes_side_by_side(avatar_file: Path, tmp_path
 
 
 def test_eyes_without_distance_see_the_same(avatar_file: Path, tmp_path: Path) -> None:
-    view([avatar_file], output=tmp_path / "v.png", size="32", stereo=True, ipd=0.0)
+    view(files=[avatar_file], output=tmp_path / "v.png", size="32", stereo=True, ipd=0.0)
     image = pixels(tmp_path / "v.png")
     np.testing.assert_array_equal(image[:, :32], image[:, 32:])
 
 
 def test_writes_a_video_of_the_frames_asked_for(avatar_file: Path, tmp_path: Path) -> None:
-    view([avatar_file], output=tmp_path / "v.mp4", size="64", frames="2:6", background="#204060")
+    view(files=[avatar_file], output=tmp_path / "v.mp4", size="64", frames="2:6", background="#204060")
     pictures = video(tmp_path / "v.mp4", side=64).astype(int)
     assert len(pictures) == 4
     assert np.abs(pictures[:, 0, 0] - [0x20, 0x40, 0x60]).max() <= CODED_SHADES
@@ -140,14 +140,14 @@ def test_writes_a_video_of_the_frames_asked_for(avatar_file: Path, tmp_path: Pat
 
 
 def test_a_video_without_frames_named_holds_the_whole_clip(avatar_file: Path, tmp_path: Path) -> None:
-    view([avatar_file], output=tmp_path / "v.mp4", size="16")
+    view(files=[avatar_file], output=tmp_path / "v.mp4", size="16")
     assert len(video(tmp_path / "v.mp4", side=16)) == 7
 
 
 def test_the_camera_orbits_and_follows(avatar_file: Path, tmp_path: Path) -> None:
     choices: list[dict[str, Any]] = [{}, {"orbit": 90.0}, {"follow": True}]
     for i, choice in enumerate(choices):
-        view([avatar_file], output=tmp_path / f"{i}.mp4", size="32", **choice)
+        view(files=[avatar_file], output=tmp_path / f"{i}.mp4", size="32", **choice)
     assert len({video(tmp_path / f"{i}.mp4", side=32)[-1].tobytes() for i in range(len(choices))}) == len(choices)
 
 
@@ -158,10 +158,10 @@ def test_motion_of_another_file_moves_the_avatar(avatar_file: Path, tmp_path: Pa
     mapping.write_text(json.dumps({"root": "hips", "middle": "spine"}))
     for frame in (0, 2):
         chosen: dict[str, Any] = {"motion": motion, "mapping": mapping, "frame": frame}
-        view([avatar_file], output=tmp_path / f"{frame}.png", size="32", **chosen)
+        view(files=[avatar_file], output=tmp_path / f"{frame}.png", size="32", **chosen)
     assert (pixels(tmp_path / "0.png") != pixels(tmp_path / "2.png")).any()
     with pytest.raises(InputError, match=r"wave\.bvh"):
-        view([avatar_file], output=tmp_path / "v.png", motion=motion)
+        view(files=[avatar_file], output=tmp_path / "v.png", motion=motion)
 
 
 @pytest.mark.parametrize(
@@ -182,18 +182,18 @@ def test_refuses_with_a_sentence_and_writes_nothing(
     avatar_file: Path, tmp_path: Path, name: str, choice: dict[str, Any], sentence: str
 ) -> None:
     with pytest.raises(InputError, match=sentence):
-        view([avatar_file], output=tmp_path / name, **choice)
+        view(files=[avatar_file], output=tmp_path / name, **choice)
     assert list(tmp_path.iterdir()) == []
 
 
 def test_refuses_several_files_for_one_picture(avatar_file: Path, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="expected one FILE, found 2"):
-        view([avatar_file] * 2, output=tmp_path / "v.png")
+        view(files=[avatar_file] * 2, output=tmp_path / "v.png")
 
 
 def test_shows_what_is_toggled(avatar_file: Path, tmp_path: Path) -> None:
     for show in ("splats", "template", "geometry", "skeleton", "splats,shadow"):
-        view([avatar_file], output=tmp_path / f"{show}.png", size="48", show=show)
+        view(files=[avatar_file], output=tmp_path / f"{show}.png", size="48", show=show)
     assert len({pixels(path).tobytes() for path in tmp_path.glob("*.png")}) == 5
 
 

@@ -79,7 +79,7 @@ def test_no_option_is_forgotten() -> None:
 )
 def test_refuses_before_anything_is_loaded(output: str | None, choice: dict[str, Any], sentence: str) -> None:
     with pytest.raises(InputError) as refused:
-        view([NOWHERE], output=None if output is None else Path(output), **choice)
+        view(files=[NOWHERE], output=None if output is None else Path(output), **choice)
     assert sentence in str(refused.value)
 
 
@@ -96,3 +96,13 @@ def test_a_close_up_is_near_unless_said_otherwise() -> None:
 def test_a_close_up_follows_unless_said_otherwise(output: Path | None) -> None:
     assert look_of(Asked(look_at="head"), output).shot.follow
     assert not look_of(Asked(look_at="head", follow=False), output).shot.follow
+
+
+@pytest.mark.parametrize(
+    "option", ["frame", "frames", "ipd", "level", "reference", "device", "mapping", "motion", "size", "zoom", "look_at",
+               "follow", "turntable", "background", "output"],
+)  # fmt: skip
+def test_refuses_in_a_browser_what_its_page_does_not_follow(option: str) -> None:
+    flag = "-o" if option == "output" else f"--{option.replace('_', '-')}"
+    with pytest.raises(InputError, match=f"^{flag}: does not work with --web"):
+        view(files=[NOWHERE], web=True, **{option: True})

@@ -286,13 +286,13 @@ def test_bench_asks_for_the_rate_and_waits_as_long_as_it_plays(monkeypatch: pyte
         waits.append(patience)
         yield from ()
 
-    def tell(verb: str, name: str, value: str = "", *_: str, seconds: float = 0) -> str:
+    def run(verb: str, name: str, value: str = "", *_: str, seconds: float = 0) -> str:
         if verb == "setprop" and value:
             settings[name] = value
         return settings.get(name, "")
 
     monkeypatch.setattr(bench, "follow", follow)
-    headset: Any = SimpleNamespace(serial="2G0YC1", tell=tell)
+    headset: Any = SimpleNamespace(serial="2G0YC1", run=run)
     with pytest.raises(InputError, match="the player's log ended"):
         bench.bench(headset, "hero", seconds=4000, rate=90)
     assert waits[0] > 4000

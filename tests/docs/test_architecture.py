@@ -59,6 +59,13 @@ def test_every_kernel_is_on_the_page() -> None:
     assert entries == {name for path, name in named() if name and path.endswith(".compute")}
 
 
+def test_the_drawing_names_folders_that_are_there() -> None:
+    labels = re.findall(r">([\w/ ]+/)<", (PAGE.parent / "images" / "architecture.svg").read_text())
+    folders = {folder for label in labels for folder in label.split()}
+    assert {"characters/", "student/", "kernels/", "web/"} < folders
+    assert [folder for folder in folders if not (ROOT / "python" / "mua" / folder).is_dir()] == []
+
+
 def test_a_name_that_is_not_there_is_found() -> None:
     assert "add" not in defined(ROOT / "python/mua/recording/writer.py")
     assert "TeacherWriter.add" in defined(ROOT / "python/mua/recording/writer.py")

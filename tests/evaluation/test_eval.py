@@ -152,12 +152,15 @@ def _root(frame: WholeFrame) -> Array:
     return np.asarray(skeleton.world(pose.rotations, pose.translations)[1][skeleton.root])
 
 
-@pytest.mark.parametrize(("views", "size", "said"), [(2, 175, "--size 175"), (0, SIZE, "--views 0"), (17, SIZE, "17")])
-def test_impossible_pictures_are_refused(
-    device: Device, recording: Recording, frames: list[WholeFrame], views: int, size: int, said: str
+@pytest.mark.parametrize(
+    ("views", "size", "said"), [(2, 175, "--size 175"), (0, SIZE, "--views 0"), (17, SIZE, "--views 17")]
+)
+def test_refuses_too_few_and_too_many_views_and_pixels(
+    recording: Recording, tmp_path: Path, views: int, size: int, said: str
 ) -> None:
     with pytest.raises(InputError, match=said):
-        Studio(device, recording.rig, frames, views=views, size=size)
+        command.evaluate(recording=recording.directory, views=views, size=size, output=tmp_path / "out")
+    assert not (tmp_path / "out").exists()
 
 
 def test_frames_are_chosen_evenly_and_of_both_kinds(recording: Recording) -> None:

@@ -1,6 +1,7 @@
 """Unchanged shaders need no compiler: every entry point comes compiled from the text of this checkout."""
 
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import check_shaders
@@ -42,7 +43,7 @@ def test_every_entry_point_runs_without_a_compiler(without_compiler: None, path:
 
 
 def test_what_comes_compiled_is_up_to_date() -> None:
-    assert gen_spirv.faults(compiled.FOLDER) == []
+    assert gen_spirv.SPIRV.faults() == []
 
 
 def test_shaders_elsewhere_with_the_same_text_come_compiled_too(without_compiler: None, copied: Path) -> None:
@@ -78,7 +79,8 @@ def _flip(folder: Path) -> None:
 def _of_another_text(folder: Path) -> None:
     index = folder / compiled.INDEX
     name = "splat.SplatVert.vert.spv"
-    index.write_text(index.read_text().replace(gen_spirv.read_index(folder)["made from"][name], 64 * "0"))
+    made_from = replace(gen_spirv.SPIRV, path=folder).index()["made from"]
+    index.write_text(index.read_text().replace(made_from[name], 64 * "0"))
 
 
 @pytest.mark.parametrize(
@@ -87,18 +89,19 @@ def _of_another_text(folder: Path) -> None:
         (_flip, "splat.SplatVert.vert.spv is not what the compiler makes"),
         (_of_another_text, "splat.SplatVert.vert.spv was made from another text"),
         (lambda folder: (folder / "splat.SplatVert.vert.spv").unlink(), "splat.SplatVert.vert.spv is missing"),
-        (lambda folder: (folder / "old.Old.comp.spv").touch(), "old.Old.comp.spv belongs to no entry point"),
+        (lambda folder: (folder / "old.Old.comp.spv").touch(), "old.Old.comp.spv belongs to no shader"),
     ],
     ids=["code", "text", "missing", "left over"],
 )
 def test_the_check_names_what_is_out_of_date(folder: Path, damage, fault: str) -> None:  # type: ignore[no-untyped-def]
     damage(folder)
-    assert gen_spirv.faults(folder) == [fault]
+    assert replace(gen_spirv.SPIRV, path=folder).faults() == [fault]
 
 
 def test_writing_mends_what_is_out_of_date(folder: Path) -> None:
     _flip(folder)
     (folder / "old.Old.comp.spv").touch()
-    gen_spirv.write(folder)
-    assert gen_spirv.faults(folder) == []
+    spirv = replace(gen_spirv.SPIRV, path=folder)
+    spirv.write()
+    assert spirv.faults() == []
     assert (folder / compiled.INDEX).read_bytes() == (compiled.FOLDER / compiled.INDEX).read_bytes()

@@ -154,7 +154,7 @@ def test_a_mapped_joint_takes_the_role_of_what_moves_it() -> None:
 
 def test_roles_of_the_file_match_joints_whose_names_say_nothing() -> None:
     source, target = person(), renamed(other_habit(person()), LeftForeArm="Tube")
-    matches = match_joints(source, target, target_said={"mixamorig_Tube": "left forearm"})
+    matches = match_joints(source, target, target_stated={"mixamorig_Tube": "left forearm"})
     assert matches.ends("left forearm") == (target.names.index("mixamorig_Tube"), source.names.index("LeftForeArm"))
 
 
@@ -163,8 +163,8 @@ def test_what_a_file_says_of_its_joints_goes_before_their_names() -> None:
     odd = chain("bone1", "bone2", "bone3", "bone4")
     said = {"bone1": "hips", "bone2": "spine", "bone3": "neck", "bone4": "head"}
     alike = dict(enumerate(zip(range(4), range(4), strict=True)))
-    assert match_joints(named, odd, target_said=said).chains == alike
-    assert match_joints(odd, named, source_said=said).chains == alike
-    crossed = match_joints(named, named, target_said={"Neck": "head", "Head": "neck"})
+    assert match_joints(named, odd, target_stated=said).chains == alike
+    assert match_joints(odd, named, source_stated=said).chains == alike
+    crossed = match_joints(named, named, target_stated={"Neck": "head", "Head": "neck"})
     assert crossed.chains == alike | {2: (3, 3), 3: (2, 2)}
     assert crossed.roles["spine"] == (1,)

@@ -50,7 +50,7 @@ def test_puts_motion_on_joints_whose_parts_the_characters_file_says(motion: Path
     source = read_motion(motion)[0]
     other = twice_as_large(source.skeleton)
     said = {"j0": "hips", "j1": "spine"}
-    (loaded,) = load_motions(motion, other, mapping=None, rate=10.0, said=said, refuse=False)
+    (loaded,) = load_motions(motion, other, mapping=None, rate=10.0, roles=said, refuse=False)
     assert sorted(loaded.matches.chains) == [0, 1]
     (silent,) = load_motions(motion, other, mapping=None, rate=10.0, refuse=False)
     assert 1 not in silent.matches.chains

@@ -22,7 +22,7 @@ from mua_research.curve import COSTS, curve, points
 from mua_research.filmed_systems import STEPS_OF_TWO, Sized, cost_of, largest_within, sized, trained_entries
 from mua_research.network import Forgetful
 from mua_research.standing import best, sentences, standings
-from mua_research.system import Budget, Sizes, TrainingFrames
+from mua_research.system import Budget, Sizes, Training, TrainingFrames
 from mua_research.systems import SYSTEMS
 
 
@@ -41,7 +41,11 @@ def test_a_system_of_another_size_learns_and_is_taken_up_again(name: str, smooth
         system.fit(frames, Budget(steps=1, batch=4), torch.Generator().manual_seed(1), lambda _: None)
         again = SYSTEMS[name](replace(frames.sizes, scale=scale))
         again.restore(system.state(), frames)
-        assert system.network.learnt() == again.network.learnt() != SYSTEMS[name](frames.sizes).parameters
+        assert (
+            system.network.parameter_count()
+            == again.network.parameter_count()
+            != SYSTEMS[name](frames.sizes).parameters
+        )
         motion = frames.motion.of(torch.arange(3))
         assert torch.equal(again.textures(motion), system.textures(motion))
 
@@ -92,11 +96,8 @@ def test_a_system_is_shown_as_it_learnt_and_one_that_fails_is_told(
     frames, begun, failed = few(smooth_frames), list[str](), list[str]()
     entries = trained_entries(
         [Sized("single-level", 1.0), Sized("linear", 2.0)],
-        frames,
-        budget=Budget(steps=1),
-        checkpoints=Forgetful(Path(), ""),
+        Training(frames, Budget(steps=1), Forgetful(Path(), ""), lambda _: None),
         begin=begun.append,
-        report=lambda _: None,
         failed=failed.append,
     )
     (entry,) = entries
@@ -120,14 +121,12 @@ def test_a_system_is_shown_as_it_learnt_and_one_that_fails_is_told(
 def test_each_size_of_a_system_is_taken_up_where_it_was_left(smooth_frames: TrainingFrames, tmp_path: Path) -> None:
     frames = few(smooth_frames)
     wanted, failed, steps = [Sized("linear", 1.0), Sized("linear", 2.0)], list[str](), list[int]()
+    checkpoints = Checkpoints(tmp_path, "key")
     for _ in range(2):
         entries = trained_entries(
             wanted,
-            frames,
-            budget=Budget(steps=1),
-            checkpoints=Checkpoints(tmp_path, "key"),
+            Training(frames, Budget(steps=1), checkpoints, lambda progress: steps.append(progress.step)),
             begin=lambda _: steps.append(0),
-            report=lambda progress: steps.append(progress.step),
             failed=failed.append,
         )
         assert [one.cost for one in entries] == [cost_of(one, frames.sizes) for one in wanted]

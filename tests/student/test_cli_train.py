@@ -4,13 +4,14 @@ import io
 import json
 import re
 import shutil
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 import torch
 from commands import Commands
-from recordings import FormulaTeacher, clip
+from recordings import RATE, FormulaTeacher, clip, plan
 from rich.console import Console
 from synthetic_avatar import synthetic_rig
 from trainings import FINISHED, STAGE_NAMES, Training
@@ -45,6 +46,15 @@ def test_an_unknown_clip_to_store_is_named_before_anything_is_trained(
     written: Path, tmp_path: Path, mua_train: Training
 ) -> None:
     assert "--clips jump: there is no such clip; expected walk" in mua_train(written, "--clips", "jump").sentence
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_refuses_a_control_character_in_a_name_before_anything_is_trained(tmp_path: Path, mua_train: Training) -> None:
+    rig, directory = synthetic_rig(), tmp_path.parent / "be\x07ll"
+    planned = plan(rig)
+    with TeacherWriter(directory, rig, rate=RATE) as writer:
+        record(FormulaTeacher(rig), [replace(planned[0], clip=replace(planned[0].clip, name="wa\x1blk"))], writer)
+    assert "the clip 'wa\\x1blk' has the control character U+001B" in mua_train(directory).sentence
     assert list(tmp_path.iterdir()) == []
 
 

@@ -1,12 +1,14 @@
 """The shaders for browsers are made from the text of this checkout, and the tool lists stale ones."""
 
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import gen_wgsl
 import pytest
 import shader_compilers
 from check_shaders import entry_points
+from compiled_folder import INDEX
 from wgsl_compile import translate
 from wgsl_source import with_atomics
 
@@ -36,8 +38,8 @@ def _flip(folder: Path) -> None:
 
 
 def _of_another_text(folder: Path) -> None:
-    index = folder / gen_wgsl.INDEX
-    index.write_text(index.read_text().replace(gen_wgsl.read_index(folder)["made from"][MODULE], 64 * "0"))
+    index, made_from = folder / INDEX, replace(gen_wgsl.WGSL, path=folder).index()["made from"]
+    index.write_text(index.read_text().replace(made_from[MODULE], 64 * "0"))
 
 
 @pytest.mark.parametrize(
@@ -52,7 +54,7 @@ def _of_another_text(folder: Path) -> None:
 )
 def test_the_check_names_what_is_out_of_date(folder: Path, damage, fault: str) -> None:  # type: ignore[no-untyped-def]
     damage(folder)
-    assert gen_wgsl.faults(folder) == [fault]  # and all else is up to date
+    assert replace(gen_wgsl.WGSL, path=folder).faults() == [fault]  # and all else is up to date
 
 
 def test_without_slangc_it_is_named(monkeypatch: pytest.MonkeyPatch, folder: Path) -> None:
@@ -62,7 +64,7 @@ def test_without_slangc_it_is_named(monkeypatch: pytest.MonkeyPatch, folder: Pat
     with pytest.raises(InputError, match="slangc is not on this machine; slangc: PyPI package slangtorch"):
         translate(path, entry, stage)
     _flip(folder)
-    assert gen_wgsl.faults(folder) == [], "the texts are still compared"
+    assert replace(gen_wgsl.WGSL, path=folder).faults() == [], "the texts are still compared"
     monkeypatch.undo()
     shader_compilers.find.cache_clear()
 

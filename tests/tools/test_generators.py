@@ -4,16 +4,19 @@ import os
 import shutil
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
 
 import checkout
+import compiled_folder
 import gen_golden
 import gen_kernel_table
 import gen_meta
 import gen_spirv
 import gen_wgsl
 import pytest
+from compiled_folder import CompiledFolder
 
 from mua.errors import InputError
 
@@ -60,58 +63,40 @@ def test_what_is_stale_is_named_and_then_written(
         module.main()
 
 
-@pytest.fixture(
-    params=[(gen_spirv, "codes", b"code", ".spv"), (gen_wgsl, "modules", "code", ".js")], ids=["spirv", "wgsl"]
-)
-def compiles(
-    request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> tuple[ModuleType, Path]:
-    """A tool that compiles, with an entry point of its own, and the folder that it writes to."""
-    module, made, code, ending = request.param
-    folder = tmp_path / "compiled"
+@pytest.fixture(params=[gen_spirv.SPIRV, gen_wgsl.WGSL], ids=["spirv", "wgsl"])
+def compiles(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> CompiledFolder:
+    """A folder that a tool compiles, with an entry point of its own."""
+    folder, ending = tmp_path / "compiled", request.param.ending
     folder.mkdir()
     (folder / f"old{ending}").touch()
     monkeypatch.setattr("sys.argv", ["tool"])
-    monkeypatch.setattr(module, made, lambda: {f"new{ending}": code})
-    monkeypatch.setattr(module, "sources", lambda: {f"new{ending}": "a digest"})
-    monkeypatch.setattr(module, "signature", lambda: "one 1.0")
-    monkeypatch.setattr(module, "ROOT", tmp_path)
-    if module is gen_spirv:
-        monkeypatch.setattr(module.compiled, "FOLDER", folder)
-    else:
-        monkeypatch.setattr(module, "FOLDER", folder)
-    return module, folder
+    monkeypatch.setattr(compiled_folder, "signature", lambda _: "one 1.0")
+    made = {"contents": lambda: {f"new{ending}": b"code"}, "sources": lambda: {f"new{ending}": "a digest"}}
+    return replace(request.param, path=folder, **made)
 
 
 def test_compiled_shaders_are_written_once_they_are_asked_for(
-    compiles: tuple[ModuleType, Path], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    compiles: CompiledFolder, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    module, folder = compiles
-    module.main()
-    assert {path.stem for path in folder.iterdir() if path.suffix != ".json"} == {"new"}
-    with monkeypatch.context() as checking:
-        checking.setattr("sys.argv", ["tool", "--check"])
-        module.main()
-        assert capsys.readouterr().out == ""
-        checking.setattr(module, "signature", lambda: "no compiler")
-        module.main()
-        assert capsys.readouterr().out.endswith("it is of one 1.0, this machine has no compiler\n")
-        next(path for path in folder.iterdir() if path.stem == "new").unlink()
-        with pytest.raises(
-            SystemExit, match=rf"^new.* is missing\ncompiled is out of date: run tools/{module.__name__}.py"
-        ):
-            module.main()
+    compiles.run("About.")
+    assert {path.stem for path in compiles.path.iterdir() if path.suffix != ".json"} == {"new"}
+    monkeypatch.setattr("sys.argv", ["tool", "--check"])
+    compiles.run("About.")
+    assert capsys.readouterr().out == ""
+    monkeypatch.setattr(compiled_folder, "signature", lambda _: "no compiler")
+    compiles.run("About.")
+    assert capsys.readouterr().out.endswith("it is of one 1.0, this machine has no compiler\n")
+    next(path for path in compiles.path.iterdir() if path.stem == "new").unlink()
+    with pytest.raises(SystemExit, match=rf"^new.* is missing\n.*compiled is out of date: run tools/{compiles.tool}"):
+        compiles.run("About.")
 
 
-def test_a_compiler_that_refuses_ends_in_its_sentence(
-    compiles: tuple[ModuleType, Path], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def refuse(_: Path) -> None:
+def test_a_compiler_that_refuses_ends_in_its_sentence(compiles: CompiledFolder) -> None:
+    def refuse() -> dict[str, bytes]:
         raise InputError("there is no compiler")
 
-    monkeypatch.setattr(compiles[0], "write", refuse)
     with pytest.raises(SystemExit, match="error: there is no compiler"):
-        compiles[0].main()
+        replace(compiles, contents=refuse).run("About.")
 
 
 def test_a_generator_takes_the_package_of_its_own_checkout(tmp_path: Path) -> None:

@@ -61,7 +61,7 @@ def motions_of(character: Character, paths: Sequence[Path]) -> Iterator[Motion]:
     """Every clip of the files, cut to its most active part; says which files the character cannot follow."""
     for path in paths:
         try:
-            loaded = load_motions(path, character.skeleton, mapping=None, rate=RATE, said=character.roles)
+            loaded = load_motions(path, character.skeleton, mapping=None, rate=RATE, roles=character.roles)
         except InputError as error:
             print(f"left out: {error}")
             continue

@@ -69,7 +69,7 @@ namespace Mua.Editor
         }
     }
 
-    /// <summary>An avatar's import has no settings; AvatarAssetEditor shows what came of it.</summary>
+    /// <summary>An avatar's import has no settings; AvatarAssetEditor shows its result.</summary>
     [CustomEditor(typeof(AvatarImporter))]
     internal sealed class AvatarImporterEditor : ScriptedImporterEditor
     {

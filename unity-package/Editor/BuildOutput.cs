@@ -7,8 +7,8 @@ using UnityEditor.Build;
 namespace Mua.Editor
 {
     /// <summary>
-    /// Where a build goes, an APK or a folder for Windows: made in a folder beside it, and moved under its own name only when
-    /// it is whole. Nothing older is left from Prepare on, so that what is there is always this build's.
+    /// Where a build goes, an APK or a folder for Windows: made in a folder beside it, and moved under its own name
+    /// only when it is complete. Nothing older is left from Prepare on, so that what is there is always this build's.
     /// </summary>
     internal sealed class BuildOutput
     {

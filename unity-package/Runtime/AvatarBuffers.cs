@@ -6,8 +6,8 @@ using UnityEngine;
 namespace Mua
 {
     /// <summary>
-    /// Everything of a file that does not change from frame to frame, in the types in which the file stores it
-    /// (python/mua/player/buffers.py). The constructor may run on any thread; Upload and Dispose belong to Unity's.
+    /// An avatar's tensors on the device, in the type in which the file stores them (python/mua/player/buffers.py). The
+    /// constructor may run on any thread; Upload and Dispose belong to Unity's.
     /// </summary>
     internal sealed class AvatarBuffers : IDisposable
     {
@@ -38,7 +38,7 @@ namespace Mua
             }
         }
 
-        /// <summary>The file that the buffers hold, on the CPU.</summary>
+        /// <summary>The file whose tensors these are, on the CPU.</summary>
         public AvatarFile Avatar { get; }
 
         public LayerBuffers[] CoarseMlp { get; }
@@ -76,8 +76,8 @@ namespace Mua
         public float Progress => total == 0 ? 1 : (float)((double)sent / total);
 
         /// <summary>
-        /// Sends about `budget` more bytes; whether all are there. InvalidOperationException names the field that is more
-        /// than the device holds.
+        /// Sends about `budget` more bytes; whether all are there. InvalidOperationException names the field that is
+        /// too large for the device.
         /// </summary>
         public bool Upload(int budget)
         {

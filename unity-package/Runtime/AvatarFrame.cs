@@ -26,7 +26,9 @@ namespace Mua
         private ChannelSet shown, hidden; // the second is made when a decode is first begun
         private int decoded = ChannelDecoder.Parts; // parts of the decode into `hidden`
 
-        /// <summary>InvalidOperationException where a kernel is missing or a buffer is more than the device holds.</summary>
+        /// <summary>
+        /// InvalidOperationException where a kernel is missing or a buffer is too large for the device.
+        /// </summary>
         public AvatarFrame(AvatarResources resources, AvatarBuffers avatar)
         {
             Avatar = avatar;
@@ -75,7 +77,7 @@ namespace Mua
         /// <summary>[2 J] dual quaternions of the joints, likewise.</summary>
         public GraphicsBuffer Joints { get; private set; }
 
-        /// <summary>Whether a decode is shown: until then the buffers hold nothing.</summary>
+        /// <summary>Whether a decode is shown; until then the buffers are empty.</summary>
         public bool IsDecoded { get; private set; }
 
         /// <summary>Whether the camera that is recorded shows it, if it is in view.</summary>
@@ -132,7 +134,7 @@ namespace Mua
 
         /// <summary>
         /// Takes the window of a decode that is made part by part beside what is shown, in place of one begun before.
-        /// InvalidOperationException where the device holds no second set of channels.
+        /// InvalidOperationException where the device has no memory for a second set of channels.
         /// </summary>
         public void Begin(ReadOnlySpan<double> rotations, ReadOnlySpan<double> translations, int level = 0)
         {

@@ -103,7 +103,9 @@ namespace Mua
             }
         }
 
-        /// <summary>Goes where the GameObject stands, and on by so many seconds of the clip, and casts its shadow.</summary>
+        /// <summary>
+        /// Moves to the GameObject's place, advances the clip by so many seconds, and casts the shadow.
+        /// </summary>
         public void Move(double step)
         {
             if (State != AvatarState.Ready)
@@ -192,19 +194,19 @@ namespace Mua
             };
         }
 
-        /// <summary>Has the next Record pose the avatar again.</summary>
+        /// <summary>Makes the next Record pose the avatar again.</summary>
         public void MarkMoved()
         {
             hasMoved = true;
         }
 
-        /// <summary>Has the next Update end the avatar; nothing may go while a camera is drawn.</summary>
+        /// <summary>Makes the next Update end the avatar: nothing may be released while a camera draws.</summary>
         public void Refuse(string sentence)
         {
             refusal = sentence;
         }
 
-        /// <summary>Has what the inspector changed take effect.</summary>
+        /// <summary>Applies what the inspector changed.</summary>
         public void Revise()
         {
             if (State == AvatarState.Ready)
@@ -229,7 +231,7 @@ namespace Mua
             }
         }
 
-        /// <summary>Gives back what the avatar holds, however far it came.</summary>
+        /// <summary>Releases everything, however far loading came.</summary>
         public void Dispose()
         {
             State = AvatarState.Empty;

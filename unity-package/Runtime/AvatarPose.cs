@@ -71,7 +71,7 @@ namespace Mua
         /// <summary>Whether a decode of Due that takes some displayed frames is late by no more than a frame of the avatar.</summary>
         public bool MayLag { get; private set; }
 
-        /// <summary>The pose without motion: the bind pose, held still.</summary>
+        /// <summary>The pose without motion: the bind pose.</summary>
         public void Hold()
         {
             if (isHeld)

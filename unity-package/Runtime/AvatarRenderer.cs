@@ -192,8 +192,9 @@ namespace Mua
         }
 
         /// <summary>
-        /// Share of the pose that training did not show, from 0 to 1, of the pose decoded last; 0 until the avatar is ready.
-        /// What lies outside is held near the poses of training, so that the avatar stays whole but follows less exactly.
+        /// Share of the pose that training did not show, from 0 to 1, of the pose decoded last; 0 until the avatar is
+        /// ready. Poses outside are limited to the range of training, so that the avatar stays intact but follows less
+        /// exactly.
         /// </summary>
         public float OutsideTraining => shown == null || shown.Decoded == null ? 0 : (float)shown.Decoded.Outside;
 

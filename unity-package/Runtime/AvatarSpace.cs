@@ -55,7 +55,7 @@ namespace Mua
         private const float SizeSlack = 1e-3f; // of the largest axis
         private const float LeastSize = 1e-4f; // a speck: the smallest to divide a position by
 
-        /// <summary>To the world divided by Size; a dual quaternion holds no scale.</summary>
+        /// <summary>To the world divided by Size; a dual quaternion has no scale.</summary>
         public DualQuaternion Rigid { get; }
 
         /// <summary>How many times as large as baked.</summary>

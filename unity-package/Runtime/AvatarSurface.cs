@@ -51,7 +51,7 @@ namespace Mua
             }
         }
 
-        /// <summary>Has the lights of this frame draw the template, in a box of Unity's world, metres.</summary>
+        /// <summary>Makes the lights of this frame draw the template, in a box of Unity's world, metres.</summary>
         public void CastShadow(AvatarViews views, Bounds bounds, int layer)
         {
             if (!frame.IsDecoded || !IsReady(views, AvatarViews.Shadow))

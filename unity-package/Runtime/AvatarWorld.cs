@@ -73,7 +73,7 @@ namespace Mua
             }
         }
 
-        /// <summary>Has the next Record sort the avatars that are shown by then.</summary>
+        /// <summary>Makes the next Record sort the avatars that are shown by then.</summary>
         public static void Refresh()
         {
             if (Current != null)
@@ -173,8 +173,8 @@ namespace Mua
         }
 
         /// <summary>
-        /// One set of shared buffers for the avatars that there are now, those whose splats are drawn first. Where the device
-        /// cannot hold them, the avatar that came last goes.
+        /// One set of shared buffers for the avatars that there are now, those whose splats are drawn first. Where they
+        /// are too large for the device, the avatar that was added last is ended.
         /// </summary>
         private void Share()
         {

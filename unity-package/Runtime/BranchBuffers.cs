@@ -4,7 +4,10 @@ using UnityEngine;
 
 namespace Mua
 {
-    /// <summary>A tensor as the kernels' `stored()` reads it (python/mua/gpu/stored.py).</summary>
+    /// <summary>
+    /// A tensor of the file as the kernels read it: words of packed elements, and how to unpack them
+    /// (python/mua/gpu/stored.py).
+    /// </summary>
     internal sealed class StoredBuffer
     {
         private readonly Upload upload;

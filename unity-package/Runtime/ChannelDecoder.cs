@@ -25,7 +25,9 @@ namespace Mua
         private readonly GraphicsBuffer[] textures = new GraphicsBuffer[2]; // finest detailed, its ll
         private GraphicsBuffer details;
 
-        /// <summary>InvalidOperationException where a kernel is missing or a buffer is more than the device holds.</summary>
+        /// <summary>
+        /// InvalidOperationException where a kernel is missing or a buffer is too large for the device.
+        /// </summary>
         public ChannelDecoder(AvatarResources resources, AvatarBuffers avatar)
         {
             this.avatar = avatar;

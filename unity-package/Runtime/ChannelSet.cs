@@ -10,7 +10,7 @@ namespace Mua
 
         private readonly BufferSet buffers = new BufferSet();
 
-        /// <summary>InvalidOperationException where a buffer is more than the device holds.</summary>
+        /// <summary>InvalidOperationException where a buffer is too large for the device.</summary>
         public ChannelSet(AvatarBuffers avatar, int componentCount)
         {
             Level = avatar.Levels[0];
@@ -27,7 +27,7 @@ namespace Mua
             }
         }
 
-        /// <summary>The buffers hold the finest.</summary>
+        /// <summary>The buffers have room for the finest.</summary>
         public LevelBuffers Level { get; set; }
 
         /// <summary>[K] of the descriptor, as the networks read them.</summary>

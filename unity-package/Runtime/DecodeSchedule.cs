@@ -3,10 +3,11 @@ using UnityEngine.Rendering;
 namespace Mua
 {
     /// <summary>
-    /// Which part of which decode a displayed frame makes, so that none has to make all of it. The poses of a clip that come
-    /// next are decoded part by part in the displayed frames before they are due; those of a rig are shown a displayed frame
-    /// or two after they came. A pose that nobody saw coming, the first or one that was sought, is decoded at once. Another
-    /// level of detail comes with the next decode, at rest at once. As python/mua/player/schedule.py.
+    /// Decides which part of which decode a displayed frame makes, so that none has to make all of it. The poses of a
+    /// clip that come next are decoded part by part in the displayed frames before they are due; those of a rig are
+    /// shown a displayed frame or two after they came. A pose that nobody saw coming, the first or one that was sought,
+    /// is decoded at once. Another level of detail comes with the next decode, at rest at once. As
+    /// python/mua/player/schedule.py.
     /// </summary>
     internal sealed class DecodeSchedule
     {
@@ -22,7 +23,9 @@ namespace Mua
             this.frame = frame;
         }
 
-        /// <summary>Shows what is due where it is whole already: what is drawn without a Record takes it from now on.</summary>
+        /// <summary>
+        /// Shows the due decode where it is complete already; frames drawn without a Record use it from now on.
+        /// </summary>
         public void ShowWhole(AvatarPose pose)
         {
             if (pose.Due == Window(coming) && frame.PartsLeft == 0)

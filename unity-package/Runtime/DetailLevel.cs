@@ -4,8 +4,8 @@ using Mua.Format;
 namespace Mua
 {
     /// <summary>
-    /// The texels of one level of detail: those of the file, or 2 x 2 of the finer level as one, as the file says which.
-    /// It may be made on any thread. Reference: python/mua/avatar/coarser.py.
+    /// The texels of one level of detail: those of the file, or every 2 x 2 texels of the finer level as one; the file
+    /// says which. It may be made on any thread. Reference: python/mua/avatar/coarser.py.
     /// </summary>
     internal sealed class DetailLevel
     {

@@ -3,7 +3,7 @@ using UnityEngine;
 
 namespace Mua
 {
-    /// <summary>What is geometry's or appearance's alone of a level of detail.</summary>
+    /// <summary>What a level of detail needs of one branch, geometry or appearance.</summary>
     internal sealed class BranchLevel
     {
         public Upsampling Upsampling; // of the wavelet levels without details

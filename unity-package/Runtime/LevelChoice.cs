@@ -2,7 +2,7 @@ using System;
 
 namespace Mua
 {
-    /// <summary>An avatar before the eyes, as LevelChoice takes it.</summary>
+    /// <summary>An avatar as the eyes see it.</summary>
     internal struct AvatarSeen
     {
         /// <summary>Distance to the nearest eye, metres.</summary>
@@ -19,8 +19,8 @@ namespace Mua
     }
 
     /// <summary>
-    /// At which level of detail avatars are shown, by the size of their texels on the screen and by what all may cost:
-    /// python/mua/avatar/level_choice.py, which tests/golden/level_choice.json holds together with this.
+    /// The choice of avatars' levels of detail by the size of their texels on the screen and a budget of splats, as in
+    /// python/mua/avatar/level_choice.py; tests/golden/level_choice.json holds both to it.
     /// </summary>
     internal static class LevelChoice
     {

@@ -9,7 +9,7 @@ from mua.avatar.model import Branch, Mlp
 def parameters(avatar: Avatar) -> dict[str, int]:
     """Learnt numbers by part; their sum is the paper's Param column (Tab. Comparison).
 
-    Components of one joint are 0 for all others: what is 0 in them is stored, and not learnt.
+    Components of one joint are 0 for all others: what is 0 in them is stored, but is no parameter.
     """
     branches, components = (avatar.geometry, avatar.appearance), avatar.components
     return {

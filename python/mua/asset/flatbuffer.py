@@ -7,7 +7,7 @@ https://flatbuffers.dev/internals/ describes the bytes.
 import re
 import struct
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, NoReturn
 
 import flatbuffers
 import numpy as np
@@ -45,6 +45,11 @@ class FormatError(InputError):
     def inside(self, file: str) -> "FormatError":
         """The same error with the name of its file."""
         return FormatError(self.code, self.field, self.sentence, file=file)
+
+
+def refuse(field: str, sentence: str) -> NoReturn:
+    """Raise the error of a value that no file may have."""
+    raise FormatError("value", field, sentence)
 
 
 class _Builder(flatbuffers.Builder):

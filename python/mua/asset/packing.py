@@ -69,7 +69,7 @@ def tensors(tree: Tree, table: str = ROOT, path: str = "") -> Iterator[tuple[str
 
 def _inflate(stream: bytes, count: int, path: str) -> np.ndarray[tuple[int], np.dtype[np.uint8]]:
     """The `count` bytes of a stream; not a byte more is made of it."""
-    if not count:  # not every language tells a damaged stream of nothing from a whole one
+    if not count:  # not every language notices that an empty stream is damaged
         return np.zeros(0, np.uint8)
     inflate = zlib.decompressobj(RAW)
     try:

@@ -1,24 +1,35 @@
-"""Whether a file can hold an avatar's numbers: the sentence that comes before anything is written."""
+"""Whether a file can store an avatar's numbers and names: checked before anything is written."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import fields, is_dataclass
 
 import numpy as np
 
 from mua.arrays import Array
 from mua.asset.avatar import Avatar
+from mua.asset.flatbuffer import CONTROL
 from mua.errors import InputError
 from mua.limits import LARGEST
 
 
 def require_storable(avatar: Avatar) -> None:
-    """Raises InputError that names the field of the first number that is not finite, or that no player could read."""
+    """Raises InputError that names the field of the first number or name that no player could read."""
+    require_names("the avatar", [avatar.name], avatar.rig.skeleton.names, [clip.name for clip in avatar.clips])
     if avatar.wavelet.coarser:
         raise InputError(f"the avatar is at level {avatar.wavelet.coarser}; expected level 0, from which others follow")
     for field, values in _reals(avatar, ""):
         held = np.abs(values) <= LARGEST  # false for nan as well
         if not held.all():
             raise InputError(f"{field}: the value {_worst(values[~held]):.6g} cannot be stored, {_remedy()}")
+
+
+def require_names(owner: str, own: Iterable[str], joints: Iterable[str], clips: Iterable[str]) -> None:
+    """Raises InputError for a name that every reader of the file would refuse."""
+    for kind, names in (("its name", own), ("the joint", joints), ("the clip", clips)):
+        for name in names:
+            if control := CONTROL.search(name):
+                found = f"has the control character U+{ord(control[0]):04X} in its name"
+                raise InputError(f"{owner}: {kind} {name!r} {found}; rename it")
 
 
 def _remedy() -> str:

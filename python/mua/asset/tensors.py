@@ -5,9 +5,10 @@ from typing import Any, Literal
 
 import numpy as np
 
+from mua import rotation
 from mua.arrays import Array
-from mua.asset.flatbuffer import MAX_BYTES, FormatError, Tree
-from mua.limits import LARGEST, MAX_RANK
+from mua.asset.flatbuffer import MAX_BYTES, FormatError, Tree, refuse
+from mua.limits import LARGEST, MAX_RANK, UNIT_BOUND
 
 Element = Literal["f32", "f16", "i8"]
 Storage = Literal["f32", "f16", "i8", "packed"]  # of a whole file
@@ -115,3 +116,21 @@ def _check_shape(values: Array, path: str, shape: tuple[int | None, ...]) -> Non
     if len(values.shape) != len(shape) or any(e not in (None, n) for e, n in zip(shape, values.shape, strict=True)):
         expected = ", ".join("any" if n is None else str(n) for n in shape)
         raise FormatError("shape", f"{path}.shape", f"{list(values.shape)}, expected [{expected}]")
+
+
+def some_reals(tensor: Tree, path: str, shape: tuple[int | None, ...], *, axis: int) -> Array:
+    """Reals of which there is at least one along the axis: components, or a rank."""
+    values = reals(tensor, path, shape)
+    if not values.shape[axis]:
+        raise FormatError("shape", f"{path}.shape", f"side {axis} is 0, expected 1 or more")
+    return values
+
+
+def unit_quaternions(tensor: Tree, path: str, shape: tuple[int | None, ...]) -> Array:
+    """Unit quaternions [..., 4], renormalised after storage."""
+    q = reals(tensor, path, shape).astype(np.float64)
+    lengths = np.linalg.norm(q, axis=-1)
+    if np.abs(lengths - 1).max(initial=0) > UNIT_BOUND:
+        worst = lengths.ravel()[np.abs(lengths - 1).argmax()]
+        refuse(path, f"a quaternion of length {worst:.4g}, expected 1")
+    return rotation.normalize(q)

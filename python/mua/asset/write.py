@@ -121,7 +121,7 @@ def _surface(surface: Surface | None) -> Tree:
 
 
 def _translated(avatar: Avatar) -> Array:
-    """Joints beside the root that a clip holds elsewhere than in the bind pose, or that the descriptor tells."""
+    """Joints beside the root that a clip holds elsewhere than in the bind pose, or that the descriptor encodes."""
     skeleton = avatar.rig.skeleton
     moved = np.isin(np.arange(len(skeleton.names)), avatar.encoding.translated)
     for clip in avatar.clips:

@@ -24,7 +24,7 @@ def decode_image(content: bytes) -> Array:
 
 
 def in_8_bits(image: Image.Image) -> Image.Image:
-    """The picture with 8 bits a value; Pillow would hold greys of 16 bits at 255 in place of scaling them."""
+    """The picture with 8 bits a value; Pillow would clip greys of 16 bits at 255 in place of scaling them."""
     if not image.mode.startswith("I;16"):
         return image
     return Image.fromarray(np.rint(np.asarray(image) / 257).astype(np.uint8))

@@ -15,7 +15,7 @@ def describe_texels(character: Character, size: int) -> str:
     mesh = character.mesh
     texels = build_texel_map(mesh, size)
     parts = body_parts(
-        character.skeleton, mesh.faces, character.skin_indices, character.skin_weights, said=character.roles
+        character.skeleton, mesh.faces, character.skin_indices, character.skin_weights, stated=character.roles
     )
     surface = np.bincount(parts, areas(mesh.vertices[mesh.faces]), minlength=len(BODY_PARTS))
     held = np.bincount(parts[texels.triangles], minlength=len(BODY_PARTS))

@@ -128,7 +128,7 @@ def _lay_out(
         nodes[anew] = nodes.max() + 1 + _numbered(rows)
         charts[anew] = charts.max() + 1 + find_charts(nodes[anew], corners[anew])
     parts = body_parts(
-        surfaces.skeleton, surfaces.faces, surfaces.skin_indices, surfaces.skin_weights, said=surfaces.roles
+        surfaces.skeleton, surfaces.faces, surfaces.skin_indices, surfaces.skin_weights, stated=surfaces.roles
     )
     surface = areas(source.positions)
     finer, absent = factors(parts, surface, detail)

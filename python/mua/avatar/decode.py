@@ -74,7 +74,7 @@ def decode_clip_frame(
     frame: int,  # at the rate of the avatar's encoding
     dtype: npt.DTypeLike = np.float32,
 ) -> Splats:
-    """Decode one frame of a clip; before its first frame, the clip is held still."""
+    """Decode one frame of a clip; before its first frame, the clip stands still."""
     window = sample(clip, np.array(avatar.encoding.frames(frame)), rate=avatar.encoding.rate)
     return decode(avatar, window.rotations, translations=window.translations, dtype=dtype)
 

@@ -79,7 +79,7 @@ def check(settings: BakeSettings, listener: Listener) -> Check:
 
 
 def fidelity_of(character: Character, clips: Sequence[Clip], *, texels: int) -> tuple[Fidelity | None, tuple[str, ...]]:
-    """How much the splats look like the character, and a sentence for what is poor; None where it cannot be said."""
+    """How much the splats look like the character, and a sentence for what is poor; None where nothing is measured."""
     if character.source is None:
         return None, (WITHOUT_FILE,)
     try:
@@ -128,7 +128,13 @@ def _loaded(settings: BakeSettings, character: Character) -> list[LoadedMotion]:
         motion
         for path in settings.motions
         for motion in load_motions(
-            path, skeleton, mapping=settings.mapping, rate=RATE, said=character.roles, feet=settings.feet, refuse=False
+            path,
+            skeleton,
+            mapping=settings.mapping,
+            rate=RATE,
+            roles=character.roles,
+            feet=settings.feet,
+            refuse=False,
         )
     ]
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 from mua.arguments import PathLike, describe
+from mua.asset.storable import require_names
 from mua.asset.tensors import Storage
 from mua.baking.listener import Listener, Log, Nobody
 from mua.baking.options import student_settings, work_directory
@@ -104,6 +105,8 @@ def _distil(recording: "Path | Recording", settings: DistilSettings, listener: L
         if not isinstance(opened, Recording):
             raise InputError(f"recording is {describe(recording)}; expected a directory or a mua.Recording")
         choose(whole_clips(opened.clips), settings.clips)  # before hours of work
+        names = [clip.name for clip in opened.clips]
+        require_names(str(opened.directory), [settings.output.stem], opened.rig.skeleton.names, names)
         distillation = Distillation(
             output=settings.output,
             work=settings.work,

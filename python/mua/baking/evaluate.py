@@ -2,7 +2,7 @@
 
 Errors are taken on the full-resolution texture of frames that the recording keeps whole, over the valid texels, in raw
 channels. Four images of each frame stand beside the teacher's: the mean texture of the training frames; the best that
-the dynamic subbands could do (D1 and D0 at their mean); the best coefficients for the learnt bases; the student's own.
+the dynamic subbands could do (D1 and D0 at their mean); the best coefficients for the trained bases; the student's own.
 """
 
 import itertools

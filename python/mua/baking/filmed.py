@@ -5,6 +5,7 @@ from functools import partial
 
 import torch
 
+from mua.asset.storable import require_names
 from mua.baking.distillation import Baked, Distillation, distil_student, finish
 from mua.baking.filmed_motion import filmed_clips, filmed_settings, plan_headings, put_on
 from mua.baking.listener import Listener
@@ -38,6 +39,7 @@ def bake_trained_teacher(settings: BakeSettings, device: torch.device, listener:
         release_memory()
     listener.stage("motion")
     model, description = load_teacher(folder)
+    require_names(str(folder), [description.name], model.rig.skeleton.names, ())
     clips, planned = _motion(settings, model.rig, description.roles, listener)
     choose(clips, settings.clips)  # before hours of work
     key = recording_key(teacher_bytes(folder), planned)
@@ -66,6 +68,7 @@ def _motion(
     if settings.character is not None:
         capture = open_capture(settings.character)
         own = filmed_clips(capture)
+        require_names(str(capture.file), (), (), [clip.name for clip in own])
         held_out = [clip.name for clip in capture.clips if clip.held_out]
     given, notes = put_on(rig, roles, settings.motions, mapping=settings.mapping, feet=settings.feet)
     for sentence in notes:

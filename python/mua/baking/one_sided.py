@@ -51,21 +51,12 @@ def with_one_sided(
     *,
     progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> M:
-    """The avatar with what `one_sided` measures; as it was where there are no clips."""
+    """The avatar with its one-sided texels marked, in the poses of clips; as it was where there are none."""
     if not clips:
         return avatar
-    texels = replace(avatar.rig.texels, one_sided=one_sided(avatar, clips, progress=progress))
+    one_sided = (shares_behind(avatar, clips, progress=progress) < LARGEST_SHARE) & ~near_open_edges(avatar.rig)
+    texels = replace(avatar.rig.texels, one_sided=one_sided)
     return replace(avatar, rig=replace(avatar.rig, texels=texels))
-
-
-def one_sided(
-    avatar: Model,
-    clips: Sequence[Clip],
-    *,
-    progress: Callable[[int, int], None] = lambda done, total: None,
-) -> Array:
-    """Whether each texel is one-sided [N] in the poses of clips."""
-    return (shares_behind(avatar, clips, progress=progress) < LARGEST_SHARE) & ~near_open_edges(avatar.rig)
 
 
 def shares_behind(

@@ -54,18 +54,18 @@ def _frames(recording: Recording) -> Iterator[Finding]:
     plausible = Plausible(recording.rig)
     for clip in recording.clips:
         for index in range(len(clip)):
-            yield from _told(clip.name, index, plausible.pose(clip.pose(index)))
+            yield from _placed(clip.name, index, plausible.pose(clip.pose(index)))
     for frame in recording.whole_frames():
         pose = frame.clip.pose(frame.index)
-        yield from _told(frame.clip.name, frame.index, plausible.frame(pose, frame.mesh, frame.texture))
+        yield from _placed(frame.clip.name, frame.index, plausible.frame(pose, frame.mesh, frame.texture))
     training = [(clip, int(index)) for clip in recording.clips if not clip.held_out for index in clip.recorded]
     rows = np.unique(np.linspace(0, len(training) - 1, min(len(training), MESHES)).astype(int))
     for row, mesh in zip(rows, recording.meshes(rows), strict=True):
         clip, index = training[row]
-        yield from _told(clip.name, index, plausible.mesh(clip.pose(index), mesh))
+        yield from _placed(clip.name, index, plausible.mesh(clip.pose(index), mesh))
 
 
-def _told(clip: str, frame: int, findings: Iterator[Finding]) -> Iterator[Finding]:
+def _placed(clip: str, frame: int, findings: Iterator[Finding]) -> Iterator[Finding]:
     for found in findings:
         yield Finding(f"clip {clip!r}, frame {frame}: {found.sentence}", found.certain)
 

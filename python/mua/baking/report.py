@@ -17,7 +17,7 @@ FILMED = "the teacher was trained on the images of a capture"
 UNSAID = "the recording does not say whether its teacher is a capture or a simulation"
 LEGEND = (
     "Errors are root mean squares of whole vectors. Mean: the mean texture of the training frames. Best: the best "
-    "coefficients for the learnt bases. Explained: share of the variance about the mean. Note: {teacher}."
+    "coefficients for the trained bases. Explained: share of the variance about the mean. Note: {teacher}."
 )
 BASELINES = ("mean", "best", "student")
 SHORT = (
@@ -109,7 +109,7 @@ def _cause(errors: Errors) -> str:
     return "its poses are like those of training, but too few frames show what moves; add motion or raise --frames"
 
 
-def said(*, teacher: str) -> tuple[str, ...]:
+def legend(*, teacher: str) -> tuple[str, ...]:
     """What holds for all of the table, in sentences."""
     return SHORT_LEGEND, f"{teacher[:1].upper()}{teacher[1:]}."
 

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from mua.asset.storable import require_names
 from mua.atlas.detail import Detail, UvMode
 from mua.baking.settings import BakeSettings
 from mua.characters.figure_size import AS_FOUND, FigureSize
@@ -42,10 +43,13 @@ def load_character(
 ) -> Character:
     """The character in the file at `path` less what `leave_out` names, or the procedural one where no path is given.
 
-    Errors: InputError where a size, or something to leave out, is given for the procedural one.
+    Errors: InputError where a size, or something to leave out, is given for the procedural one, and for names that no
+    avatar file may have.
     """
     if path is not None:
-        return read_character(path, uv=uv, atlas_size=ATLAS, detail=detail, size=size, leave_out=leave_out)
+        character = read_character(path, uv=uv, atlas_size=ATLAS, detail=detail, size=size, leave_out=leave_out)
+        require_names(str(path), [character.name], character.skeleton.names, ())
+        return character
     if size != AS_FOUND:
         raise InputError("--scale and --height need a character from a file; give CHARACTER")
     if leave_out:
@@ -64,19 +68,22 @@ def load_clips(
 ) -> tuple[list[Clip], list[str]]:
     """The clips of `motions` put on the character, or the character's own; and notes on them.
 
-    Clips of one name are numbered. Errors: InputError where there is no motion at all.
+    Clips of one name are numbered. Errors: InputError where there is no motion at all, and for names that no avatar
+    file may have.
     """
     if not motions:
         if not character.clips:
             raise InputError(f"{character.name}: holds no animation; give a file or directory with --motion")
+        require_names(character.name, (), (), [clip.name for clip in character.clips])
         return [resample(clip, RATE) for clip in character.clips], []
     clips: list[Clip] = []
     notes: list[str] = []
     for path in motions:
         for loaded in load_motions(
-            path, character.skeleton, mapping=mapping, rate=RATE, said=character.roles, feet=feet
+            path, character.skeleton, mapping=mapping, rate=RATE, roles=character.roles, feet=feet
         ):
             quality = measure_motion(loaded.source, character.skeleton, loaded.clip, loaded.matches)
+            require_names(str(path), (), (), [loaded.clip.name])
             clips.append(loaded.clip)
             notes += (*loaded.notes, *quality.flaws)
     return unique_names(clips), list(counted(notes, clips))

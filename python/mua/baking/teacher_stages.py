@@ -6,6 +6,7 @@ from pathlib import Path
 
 import torch
 
+from mua.asset.storable import require_names
 from mua.baking.listener import Listener
 from mua.capture import open_capture
 from mua.capture.inventory import missing_files
@@ -40,6 +41,8 @@ def carry_out(
     """Train the teacher of a capture and write it to `output`; the first of several processes writes and reports."""
     listener.stage("capture")
     capture = open_capture(folder)
+    clips = [clip.name for clip in capture.clips]
+    require_names(str(capture.file), [capture.name], capture.surfaces.skeleton.names, clips)
     if settings.drivable is None:
         settings = replace(settings, drivable=capture.meshes is not None)
     for sentence in missing_files(capture):
@@ -73,9 +76,9 @@ def _key(filmed: Filmed, settings: TeacherSettings, weights: Path | None, materi
     skin = (rig.mesh.vertices, rig.mesh.faces, rig.skin_indices, rig.skin_weights, rig.skeleton.bind_inverse)
     poses = [values for clip in filmed.clips for values in (clip.rotations, clip.translations)]
     points = [values for of in material.tracks for values in (*vars(of.tracks).values(), of.texels)]
-    said = filmed.capture.file.read_bytes()
+    description = filmed.capture.file.read_bytes()
     return run_key(
-        (settings, said, None if weights is None else sha256(weights.read_bytes()).hexdigest()),
+        (settings, description, None if weights is None else sha256(weights.read_bytes()).hexdigest()),
         [filmed.subject.surfels, *map(torch.as_tensor, (*skin, *poses)), *(one for one in points if one is not None)],
     )
 

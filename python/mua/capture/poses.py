@@ -19,7 +19,7 @@ def template_poses(
     name: str,  # of the clip; of a file with several motions, it is the one of this name
 ) -> Clip:
     """All poses of a motion. Feet stay where the motion has them: they were measured, not made up."""
-    loaded = load_motions(motion, surfaces.skeleton, mapping=None, rate=rate, said=surfaces.roles, feet="keep")
+    loaded = load_motions(motion, surfaces.skeleton, mapping=None, rate=rate, roles=surfaces.roles, feet="keep")
     called = [one.clip for one in loaded if one.clip.name == name] or [one.clip for one in loaded]
     if len(called) > 1:
         names = ", ".join(repr(clip.name) for clip in called)

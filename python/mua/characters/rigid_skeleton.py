@@ -90,7 +90,7 @@ def _stretches(motion: RigidMotion, bind: Bind) -> Stretches | None:
 
 
 def _moved(skeleton: Skeleton, bind: Bind, offsets: list[Array]) -> Array:
-    """Joints [J] that some clip holds elsewhere in their parents than the bind pose, of those that carry the mesh."""
+    """Joints [J] that some clip moves in their parents away from the bind pose, of those that carry the mesh."""
     apart = np.zeros(len(skeleton.names))
     for offset in offsets:
         apart = np.maximum(apart, np.linalg.norm(offset - skeleton.bind_translations, axis=-1).max(axis=0))

@@ -34,8 +34,8 @@ def upright_rotation(scene: Scene, bind: Bind) -> Array | None:
 def _roles(scene: Scene, bind: Bind) -> dict[str, tuple[int, ...]]:
     names = tuple(scene.node_names[node] for node in bind.nodes)
     still = np.tile([1.0, 0, 0, 0], (len(names), 1))
-    said = {name: scene.roles[int(node)] for name, node in zip(names, bind.nodes, strict=True) if node in scene.roles}
-    return roles(Skeleton(names, bind.parents, still, bind.places, root=0), said)
+    stated = {name: scene.roles[int(node)] for name, node in zip(names, bind.nodes, strict=True) if node in scene.roles}
+    return roles(Skeleton(names, bind.parents, still, bind.places, root=0), stated)
 
 
 def _on_four_legs(found: dict[str, tuple[int, ...]], places: Array) -> bool:

@@ -163,15 +163,7 @@ def _described(source: Path, folder: Path, given: _Given) -> "Capture":
             f"{source}: its layout is not known; expected calibration_full.json or calibration.json with "
             "smpl_params.npz, or videos stream*.mp4 with cameras.calib or a .calibration file"
         )
-    return read_streams(
-        source,
-        folder,
-        template=given.template,
-        motion=given.motion,
-        rate=given.rate,
-        height=given.height,
-        leave_out=given.leave_out,
-    )
+    return read_streams(source, folder, **given._asdict())
 
 
 def _calibrated(source: Path, folder: Path, calibration: Path, given: _Given, *, axes: str, scale: float) -> "Capture":
@@ -181,18 +173,8 @@ def _calibrated(source: Path, folder: Path, calibration: Path, given: _Given, *,
 
     if given.template is None or given.motion is None:
         raise InputError(f"--calibration {calibration}: expected --template and --motion with it")
-    return read_calibrated(
-        source,
-        folder,
-        calibration=calibration,
-        template=given.template,
-        motion=given.motion,
-        rate=given.rate,
-        scale=scale,
-        axes=read_axes(axes),
-        height=given.height,
-        leave_out=given.leave_out,
-    )
+    axes_of = read_axes(axes)
+    return read_calibrated(source, folder, calibration=calibration, axes=axes_of, scale=scale, **given._asdict())
 
 
 def _require_picture(output: Path) -> None:

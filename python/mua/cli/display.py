@@ -72,7 +72,7 @@ class Display:
             self._end(name)
 
     def note(self, sentence: str) -> None:
-        """Say a sentence, before the next step or stage: one that comes several times is said once."""
+        """Print a sentence, before the next step or stage; one that comes several times is printed once."""
         self._notes[sentence] = self._notes.get(sentence, 0) + 1
 
     def _say_notes(self) -> None:
@@ -109,12 +109,12 @@ def show(console: Console, baked: "Baked") -> None:
 
     Ends the command with status UNEXPLAINED where less than nothing of some frames is explained.
     """
-    from mua.baking.report import closing, said, table
+    from mua.baking.report import closing, legend, table
 
     lines = [closing(baked.stored, baked.output)]
     if baked.errors:
         console.print(table(baked.errors))
-        lines = [*said(teacher=baked.teacher), *lines]
+        lines = [*legend(teacher=baked.teacher), *lines]
     if baked.sheet is not None:
         lines.append(f"{baked.sheet}: teacher, student and their difference side by side")
     if baked.figures is not None:

@@ -9,7 +9,7 @@ from mua.cli.display import Display
 from mua.errors import InputError
 from mua.evaluation import entries, plots, report, scores
 from mua.evaluation.images import Studio
-from mua.evaluation.order import EvaluationOrder
+from mua.evaluation.settings import EvaluationSettings
 from mua.files.lock import DirectoryLock
 from mua.files.write import replacing, write_bytes
 from mua.gpu import Device, open_device
@@ -17,35 +17,37 @@ from mua.recording import Recording
 from mua.splatting.perceptual import Lpips
 
 
-def compare(order: EvaluationOrder) -> None:
-    """Carry out an order, and write and print what comes of it."""
-    recording = Recording(order.recording)
-    chosen = scores.choose_frames(recording, order.frames)
+def compare(settings: EvaluationSettings) -> None:
+    """Compare what the settings name, and write and print the results."""
+    recording = Recording(settings.recording)
+    chosen = scores.choose_frames(recording, settings.frames)
     if not chosen:
-        raise InputError(f"recording {order.recording}: no frame is kept whole, expected at least one to compare with")
-    lpips = Lpips(order.lpips_weights) if order.lpips_weights is not None else None
+        raise InputError(
+            f"recording {settings.recording}: no frame is kept whole, expected at least one to compare with"
+        )
+    lpips = Lpips(settings.lpips_weights) if settings.lpips_weights is not None else None
     console = printer()
-    output, size = order.output, order.size
-    with closing(open_device(order.device)) as opened, Display(console) as display:
-        studio = Studio(opened, recording.rig, chosen, views=order.views, size=size)
+    output, size = settings.output, settings.size
+    with closing(open_device(settings.device)) as opened, Display(console) as display:
+        studio = Studio(opened, recording.rig, chosen, views=settings.views, size=size)
         rows = [entries.mean_entry(recording)]
-        rows += _avatars(opened, order.avatars, recording, size=size, own_mesh=order.own_mesh, display=display)
-        if order.system:
+        rows += _avatars(opened, settings.avatars, recording, size=size, own_mesh=settings.own_mesh, display=display)
+        if settings.system:
             from mua_research.recorded_systems import system_entries  # because only a checkout has it
 
             with DirectoryLock(output / "work", name=f"-o {output}"):
-                rows += system_entries(order, recording, output / "work", display)
+                rows += system_entries(settings, recording, output / "work", display)
         display.stage("images")
         results = scores.score(studio, chosen, rows, lpips=lpips, progress=display.step)
         setting = report.Setting(
-            recording=order.recording.name,
+            recording=settings.recording.name,
             device=str(opened.adapter),
             frames={kind: sum(f.clip.held_out == held for f in chosen) for kind, held in scores.KINDS.items()},
-            views=order.views,
+            views=settings.views,
             size=size,
-            seconds=order.seconds if order.steps is None else None,
-            steps=order.steps,
-            preset=order.preset,
+            seconds=settings.seconds if settings.steps is None else None,
+            steps=settings.steps,
+            preset=settings.preset,
             lpips=None if lpips is None else lpips.network,
             covered=sum(s.covered for s in results[0].samples) / max(len(results[0].samples), 1),
         )
@@ -73,7 +75,7 @@ def _avatars(
 
 
 def _write(output: Path, results: list[scores.Result], setting: report.Setting) -> list[str]:
-    """All figures, each file whole or as it was; the names of the files."""
+    """Write all figures, each file atomically; returns the names of the files."""
     contents = {
         "results.md": report.markdown(results, setting).encode(),
         "results.csv": report.as_csv(results).encode(),

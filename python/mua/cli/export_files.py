@@ -51,7 +51,7 @@ def write(output: Path, kind: Kind, source: Source, *, frames: str | None, axes:
         down = kind.suffix in SPLAT_FORMATS if axes is None else axes == "y-down"
         contents = (frame_content(kind, exported, number, down=down) for number in exported.numbers)
         write_all(zip(paths, _with_progress(contents, output, len(paths)), strict=True))
-    typer.echo(_told(paths, held(kind, exported)))
+    typer.echo(_written(paths, held(kind, exported)))
 
 
 def parse_numbers(text: str, clip: Clip) -> range:
@@ -70,7 +70,7 @@ def parse_numbers(text: str, clip: Clip) -> range:
 
 
 def _frames(output: Path, kind: Kind, source: Source, frames: str | None) -> ExportFrames:
-    """The frames to export; what retargeting has to tell goes to standard error."""
+    """The frames to export; notes of the retargeting go to standard error."""
     mapping = None if source.mapping is None else read_mapping(source.mapping)
     avatar = read(source.file)
     clips, notes = player_clips(avatar, source.file, motion=source.motion, mapping=mapping)
@@ -108,7 +108,7 @@ def _with_progress(contents: Iterator[T], output: Path, count: int) -> Iterator[
     return iter(track(contents, description=output.name, total=count, console=console, disable=hidden))
 
 
-def _told(paths: list[Path], content: str) -> str:
+def _written(paths: list[Path], content: str) -> str:
     """What was written, for the last line."""
     size = sum(path.stat().st_size for path in paths)
     shown = f"{size / 1e6:.1f} MB" if size >= 1e5 else f"{size / 1e3:.1f} KB"

@@ -10,35 +10,35 @@ from mua.cli.console import printer
 from mua.cli.display import Display
 from mua.errors import InputError
 from mua.evaluation import filmed, filmed_report
-from mua.evaluation.order import EvaluationOrder
+from mua.evaluation.settings import EvaluationSettings
 from mua.files.lock import DirectoryLock
 from mua.files.write import replacing, write_bytes
 from mua.splatting.perceptual import Lpips
 
 
-def compare(order: EvaluationOrder) -> None:
-    """Carry out an order whose recording is the folder of a capture, and write and print what comes of it."""
-    capture = open_capture(order.recording)
-    chosen = filmed.shots(capture, order.frames)
-    lpips = Lpips(order.lpips_weights) if order.lpips_weights is not None else None
-    template, work = capture.surfaces.skeleton, order.output / "work"
-    entries = [] if order.teacher is None else filmed.teacher_entries(order.teacher, template)
-    entries += [filmed.avatar_entry(path, template) for path in order.avatars]
+def compare(settings: EvaluationSettings) -> None:
+    """Compare with the images of a capture what the settings name, and write and print the results."""
+    capture = open_capture(settings.recording)
+    chosen = filmed.shots(capture, settings.frames)
+    lpips = Lpips(settings.lpips_weights) if settings.lpips_weights is not None else None
+    template, work = capture.surfaces.skeleton, settings.output / "work"
+    entries = [] if settings.teacher is None else filmed.teacher_entries(settings.teacher, template)
+    entries += [filmed.avatar_entry(path, template) for path in settings.avatars]
     console = printer()
-    with DirectoryLock(work, name=f"-o {order.output}"), Display(console) as display:
-        said: list[str] = []
-        if order.system:
+    with DirectoryLock(work, name=f"-o {settings.output}"), Display(console) as display:
+        training: list[str] = []
+        if settings.system:
             from mua_research.filmed_training import system_entries  # because only a checkout has it
 
-            systems, said = system_entries(order, capture, work, display)
+            systems, training = system_entries(settings, capture, work, display)
             entries = [*entries, *systems]
         display.stage("images")
-        looked_at = _looked_at(order, capture, chosen, entries, lpips, display)
+        looked_at = _looked_at(settings, capture, chosen, entries, lpips, display)
     judged = [one for one in looked_at if one.scores]
     if not judged:
         raise InputError(f"{capture.file}: nobody is seen in any of the {len(chosen)} views by cameras with held_out")
     about = [f"{len(judged)} images of {capture.name}, inside the box around the mask, over white."]
-    about += [*filmed_report.nobody_there([one.shot for one in looked_at if not one.scores]), *said]
+    about += [*filmed_report.nobody_there([one.shot for one in looked_at if not one.scores]), *training]
     found: list[filmed.Standing] = []
     plots: dict[str, bytes] = {}
     if any(one.system for one in entries):
@@ -47,14 +47,14 @@ def compare(order: EvaluationOrder) -> None:
         found = standing.standings(judged, entries)
         about += standing.sentences(found)
         plots["curve.png"] = curve.curve(judged, entries)
-    written = _write(order.output, judged, entries, about, found, plots)
+    written = _write(settings.output, judged, entries, about, found, plots)
     console.print(filmed_report.table(judged, entries))
-    for sentence in [*about, f"{order.output}: {', '.join(written)}"]:
+    for sentence in [*about, f"{settings.output}: {', '.join(written)}"]:
         console.print(sentence, highlight=False, soft_wrap=True, markup=False)
 
 
 def _looked_at(
-    order: EvaluationOrder,
+    settings: EvaluationSettings,
     capture: Capture,
     chosen: Sequence[filmed.Shot],
     entries: Sequence[filmed.FilmedEntry],
@@ -62,11 +62,11 @@ def _looked_at(
     display: Display,
 ) -> list[filmed.Judged]:
     """Every view; only those of the contact sheets keep their images in memory."""
-    shown, see = set(filmed_report.sheet_shots(chosen)), ViewStore(capture, order.output / "work" / "views").view
-    kept, found = shown if order.images is None else set(chosen), []
+    shown, see = set(filmed_report.sheet_shots(chosen)), ViewStore(capture, settings.output / "work" / "views").view
+    kept, found = shown if settings.images is None else set(chosen), []
     for one in filmed.judge(capture, chosen, entries, see=see, kept=kept, lpips=lpips):
-        if order.images is not None:
-            filmed_report.write_images(order.images, one)
+        if settings.images is not None:
+            filmed_report.write_images(settings.images, one)
         found.append(one if one.shot in shown else replace(one, pictures={}))
         display.step(len(found), len(chosen))
     return found
@@ -80,7 +80,7 @@ def _write(
     found: Sequence[filmed.Standing],
     plots: Mapping[str, bytes],  # by name of their files
 ) -> list[str]:
-    """All figures, each file whole or as it was; the names of the files."""
+    """Write all figures, each file atomically; returns the names of the files."""
     contents = {
         "results.md": filmed_report.markdown(judged, entries, about).encode(),
         "results.csv": filmed_report.as_csv(judged).encode(),

@@ -12,7 +12,7 @@ from typing import Annotated, Any, get_args, get_origin
 import typer
 
 from mua.cli.choice import choice
-from mua.option import Option, declared, takes_path, takes_several
+from mua.option import Option, declared, takes_numbers, takes_path, takes_several
 from mua.version import __version__
 
 
@@ -66,7 +66,7 @@ def command_options(
     """What a terminal takes for each option that a public function declares, as typer has it."""
     titles = {name: title for title, names in (panels or {}).items() for name in names}
     return {
-        argument.name: Annotated[_typed(argument, kind, option), _described(argument, option, titles)]
+        argument.name: Annotated[_typed(argument, kind, option), _described(argument, kind, option, titles)]
         for argument, kind, option in declared(function)
     }
 
@@ -74,19 +74,19 @@ def command_options(
 def _typed(argument: inspect.Parameter, kind: Any, option: Option) -> Any:
     """The type of a terminal's value; an argument without a name is a path."""
     if takes_several(kind):
-        return list[Path] if takes_path(kind) else list[str]
+        return list[Path] if takes_path(kind) else list[float] if takes_numbers(kind) else list[str]
     if argument.kind is argument.POSITIONAL_OR_KEYWORD or takes_path(kind):
         return Path if argument.default is argument.empty or argument.default is not None else Path | None
     return str if option.choices else kind
 
 
-def _described(argument: inspect.Parameter, option: Option, titles: Mapping[str, str]) -> Any:
+def _described(argument: inspect.Parameter, kind: Any, option: Option, titles: Mapping[str, str]) -> Any:
     """Typer's own declaration of an option."""
     if argument.kind is argument.POSITIONAL_OR_KEYWORD:
         return typer.Argument(help=option.help, show_default=option.default, metavar=option.metavar)
     name = f"--{argument.name.replace('_', '-')}"
     if option.choices:
-        described = choice(option.choices, name, help=option.help)
+        described = choice(option.choices, name, help=option.help, several=takes_several(kind))
     else:
         flags = [name, option.short] if option.short else [name] if argument.default is False else []
         described = typer.Option(*flags, help=option.help, show_default=option.default)

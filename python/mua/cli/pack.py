@@ -1,4 +1,4 @@
-"""mua-pack: the same avatar in a file of another size, for the network or for players of older versions."""
+"""mua-pack: the same avatar with its numbers stored in another way: smaller for the network, or as they were."""
 
 from pathlib import Path
 from typing import Annotated
@@ -22,9 +22,7 @@ def pack(
         Path | None,
         typer.Option("--output", "-o", help="File to write.", show_default="FILE's name with the storage behind it"),
     ] = None,
-    storage: Annotated[
-        Storage, typer.Option(help="packed is the smallest; the others are read by players older than format 3.0 too.")
-    ] = "packed",
+    storage: Annotated[Storage, typer.Option(help="How numbers are stored; packed is the smallest.")] = "packed",
 ) -> None:
     """Compress the avatar in FILE for download: a third of the bytes, less than 0.1 dB from the original."""
     require_file(file)

@@ -58,7 +58,7 @@ def write(
         paint = painter(clip)
         painted = (paint(frame, eyes) for frame, eyes in zip(take.frames, take.cameras, strict=True))
         _save(output, (over(picture, look.background) for picture in painted), take)
-    typer.echo(_told(output, take))
+    typer.echo(_written(output, take))
 
 
 @contextmanager
@@ -90,7 +90,7 @@ def _levels(avatar: Avatar, look: Look) -> Levels:
 
 
 def _chosen(avatar: Avatar, source: Source) -> Clip:
-    """The clip to show; what retargeting has to tell goes to standard error."""
+    """The clip to show; notes of the retargeting go to standard error."""
     file = source.files[0]
     clips, notes = player_clips(avatar, file, motion=source.motion, mapping=source.mapping)
     for note in notes:
@@ -122,7 +122,7 @@ def _save(output: Path, pictures: Iterator[Array], take: _Take) -> None:
             Image.fromarray(next(pictures)).save(temporary)
 
 
-def _told(output: Path, take: _Take) -> str:
+def _written(output: Path, take: _Take) -> str:
     """What was written, for the last line."""
     eyes = take.cameras[0]
     width, height = eyes[0].screen

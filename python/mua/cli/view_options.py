@@ -1,9 +1,9 @@
 """What the options of mua-view ask for, in the window and in files alike; checked before anything is loaded."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from pathlib import Path
-from typing import Literal
+from typing import Annotated, Literal
 
 from mua.avatar.camera import EYE_DISTANCE
 from mua.cli.option_values import (
@@ -21,6 +21,7 @@ from mua.cli.option_values import (
 )
 from mua.errors import InputError
 from mua.files.inputs import require_file, require_motion
+from mua.option import Option
 from mua.player.levels import AUTO, FULL
 from mua.player.shot import Look, Shot
 from mua.player.toggles import parse_toggles
@@ -54,20 +55,58 @@ IN_WINDOW = Defaults(size="1280x860", background="#edf0f2", show="splats,shadow"
 
 @dataclass(frozen=True)
 class Asked:
-    """How the figure is to be seen, as the options say it; None where one is left out."""
+    """How the figure is to be seen: options of mua-view; None where one is left out."""
 
-    size: str | None = None
-    azimuth: float = 0.0
-    elevation: float = 0.0
-    zoom: float | None = None
-    look_at: str | None = None
-    orbit: float | None = None
-    follow: bool | None = None
-    stereo: bool = False
-    ipd: float | None = None
-    background: str | None = None
-    show: str | None = None
-    level: str | None = None
+    _: KW_ONLY
+    size: Annotated[
+        str | None,
+        Option(
+            "Image size per eye in pixels: WIDTHxHEIGHT or one number.",
+            default=f"{IN_FILES.size}, window {IN_WINDOW.size}",
+        ),
+    ] = None
+    azimuth: Annotated[
+        float, Option("Camera angle around the figure in degrees, towards its left; 0 is its front.")
+    ] = 0.0
+    elevation: Annotated[float, Option("Camera angle above the horizon in degrees.")] = 0.0
+    zoom: Annotated[
+        float | None,
+        Option("Zoom factor; 1 shows the whole figure.", default=f"1; {CLOSE_UP:g} with --look-at"),
+    ] = None
+    look_at: Annotated[
+        str | None, Option("Joint or body part to look at and follow, such as head, hips or 'left hand'.")
+    ] = None
+    orbit: Annotated[
+        float | None,
+        Option("Degrees per second by which the camera orbits the figure.", default="0; 60 with --turntable"),
+    ] = None
+    follow: Annotated[
+        bool | None,
+        Option("Whether the camera follows the figure.", default="follows in the window and with --look-at"),
+    ] = None
+    stereo: Annotated[bool, Option("Show left and right eye side by side.")] = False
+    ipd: Annotated[float | None, Option("Distance between the eyes in metres.", default=f"{EYE_DISTANCE:g}")] = None
+    background: Annotated[
+        str | None,
+        Option(
+            "Background: a colour name, #rrggbb or transparent.",
+            default=f"{IN_FILES.background}, window {IN_WINDOW.background}",
+        ),
+    ] = None
+    show: Annotated[
+        str | None,
+        Option(
+            "What to draw, separated by commas: splats, geometry, template, skeleton, shadow.",
+            default=f"{IN_FILES.show}; window {IN_WINDOW.show}",
+        ),
+    ] = None
+    level: Annotated[
+        str | None,
+        Option(
+            "Level of detail: full, texels along a side such as 384, or auto: fewer when seen from afar.",
+            default=f"{IN_FILES.level}, window {IN_WINDOW.level}",
+        ),
+    ] = None
 
 
 def kind_of(output: Path | None, *, turntable: bool) -> Kind:

@@ -1,13 +1,13 @@
 """mua-view --web: avatars in a browser, served from this machine."""
 
-import math
 import webbrowser
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 
 import typer
 
+from mua.cli.option_values import parse_angle
+from mua.cli.view_options import Asked
 from mua.errors import InputError
 from mua.files.inputs import require_file
 from mua.player.toggles import parse_toggles
@@ -15,40 +15,33 @@ from mua.share.poster import front, opening
 from mua.share.server import address, serving
 from mua.share.site import Shown, player_site, title_of
 
+IN_PAGE = ("--azimuth", "--elevation", "--orbit", "--stereo", "--show")  # options of Asked that a page follows
+
 
 def check_web(given: Mapping[str, object]) -> None:
     """Raises InputError for an option that would change nothing in a browser; None and False are not given."""
     for option, value in given.items():
-        if value is not None and value is not False:
+        if value is not None and value is not False and option not in IN_PAGE:
             raise InputError(f"{option}: does not work with --web; the page has controls of its own")
 
 
-@dataclass(frozen=True)
-class Where:
-    """From where a page shows avatars when it is opened."""
+def attributes(asked: Asked, front: float) -> dict[str, str]:
+    """Attributes of the page's element for a figure that faces `front` degrees.
 
-    azimuth: float  # degrees from the figure's front
-    elevation: float  # degrees
-    orbit: float | None  # degrees per second
-    stereo: bool
-
-    def attributes(self, front: float) -> dict[str, str]:
-        """Attributes of the element for one that faces `front` degrees; raises InputError for what is no number."""
-        given = {"azimuth": self.azimuth, "elevation": self.elevation, "orbit": self.orbit or 0.0}
-        for name, value in given.items():
-            if not math.isfinite(value):
-                raise InputError(f"--{name} is {value}; expected a finite number of degrees")
-        more = {"azimuth": f"{self.azimuth + front:.1f}", "elevation": f"{self.elevation:g}"}
-        more |= {} if self.orbit is None else {"orbit": f"{self.orbit:g}"}
-        return more | ({"stereo": ""} if self.stereo else {})
+    Raises InputError for what is no finite number.
+    """
+    for name in ("azimuth", "elevation", "orbit"):
+        parse_angle(f"--{name}", getattr(asked, name) or 0.0)
+    more = {"azimuth": f"{asked.azimuth + front:.1f}", "elevation": f"{asked.elevation:g}"}
+    more |= {} if asked.orbit is None else {"orbit": f"{asked.orbit:g}"}
+    return more | ({"stereo": ""} if asked.stereo else {})
 
 
 def serve(
     files: list[Path],
-    where: Where,
+    asked: Asked,
     *,
     clip: str | None,
-    show: str | None,
     opens: bool,  # a browser
 ) -> None:
     """Serve the player with avatars until Ctrl-C is pressed.
@@ -58,8 +51,8 @@ def serve(
     for file in files:
         require_file(file)
     started = [opening(file, clip) for file in files]
-    more = where.attributes(front(*started[0]))
-    shown = Shown(title_of(files), clip, None if show is None else _shown(show), more)
+    more = attributes(asked, front(*started[0]))
+    shown = Shown(title_of(files), clip, None if asked.show is None else _shown(asked.show), more)
     with serving(player_site(files, shown)) as server:
         typer.echo(f"{shown.title}: {address(server)} (Ctrl-C ends)")
         if opens:

@@ -1,4 +1,4 @@
-"""Avatars on their way to the headset: checked here, and there either whole or not at all."""
+"""Avatars on their way to the headset: checked here, and complete or absent there."""
 
 import re
 from contextlib import suppress
@@ -42,22 +42,22 @@ def check(paths: list[Path]) -> list[Checked]:
 
 
 def push(headset: Headset, avatar: Checked) -> int:
-    """Send one avatar and return its bytes; under its own name there is only ever a whole file.
+    """Send one avatar and return its bytes; under its own name there is only ever a complete file.
 
     Errors: InputError if it does not arrive whole; what had arrived is deleted.
     """
     content = avatar.path.read_bytes()
     target = f"{FOLDER}/{avatar.name}{SUFFIX}"
     partial = target + PART
-    headset.tell("mkdir", "-p", FOLDER)
+    headset.run("mkdir", "-p", FOLDER)
     try:
         headset.send(content, partial)
         _require_size(headset, partial, len(content))
-        headset.tell("mv", "-f", partial, target)
+        headset.run("mv", "-f", partial, target)
         _require_size(headset, target, len(content))
     except BaseException:
         with suppress(InputError):  # report the first failure, not that of deleting
-            headset.tell("rm", "-f", partial)
+            headset.run("rm", "-f", partial)
         raise
     return len(content)
 

@@ -48,7 +48,7 @@ def bench(headset: Headset, avatar: str, *, seconds: int, rate: int) -> Benched:
     Errors: InputError if the player cannot, or if no figures came from it.
     """
     run = new_run()
-    model = headset.tell("getprop", "ro.product.model")
+    model = headset.run("getprop", "ro.product.model")
     arguments = ("-muaBench", avatar, "-muaSeconds", str(seconds))
     with (
         steady(headset, rate),
@@ -67,12 +67,12 @@ def collect(lines: Iterable[str], run: str) -> list[dict[str, float]]:
     """
     begun, samples = False, list[dict[str, float]]()
     for line in lines:
-        for said in answers([line], MARK, run):
-            if said.startswith("FAIL "):
-                raise InputError(f"the player cannot measure: {said.removeprefix('FAIL ')}")
-            if said == "END" and begun:
+        for answer in answers([line], MARK, run):
+            if answer.startswith("FAIL "):
+                raise InputError(f"the player cannot measure: {answer.removeprefix('FAIL ')}")
+            if answer == "END" and begun:
                 return samples
-            begun = begun or said.startswith("START ")
+            begun = begun or answer.startswith("START ")
         if begun and (sample := vrapi.parse(line)):
             samples.append(sample)
     raise InputError("the player's log ended while it measured")

@@ -99,7 +99,7 @@ def _asked(look: Callable[[Headset], Check], headset: Headset) -> Check:
 
 def _system(headset: Headset) -> Check:
     names = ("ro.product.model", "ro.build.version.release", "ro.build.version.sdk", "ro.build.display.id")
-    model, android, api, build = (headset.tell("getprop", name) for name in names)
+    model, android, api, build = (headset.run("getprop", name) for name in names)
     found = f"{model}, Android {android} (API {api}), {build}"
     if not api.isdecimal() or int(api) < OLDEST_API:
         return Check("system", "wrong", found, f"update the headset: the player needs API {OLDEST_API} or newer")
@@ -107,7 +107,7 @@ def _system(headset: Headset) -> Check:
 
 
 def _battery(headset: Headset) -> Check:
-    pairs = (line.partition(":") for line in headset.tell("dumpsys", "battery").splitlines())
+    pairs = (line.partition(":") for line in headset.run("dumpsys", "battery").splitlines())
     level = next((value.strip() for key, _, value in pairs if key.strip() == "level"), "")
     if not level.isdecimal():
         return Check("battery", "missing", "", "restart the headset: it does not tell its level")
@@ -119,7 +119,7 @@ def _battery(headset: Headset) -> Check:
 def _player(headset: Headset) -> Check:
     if not installed(headset):
         return Check("player", "missing", "", "install it: mua-deploy --apk FILE, or --project DIR to build it")
-    shown = headset.tell("dumpsys", "package", PACKAGE).split()
+    shown = headset.run("dumpsys", "package", PACKAGE).split()
     version = next((word.partition("=")[2] for word in shown if word.startswith("versionName=")), "")
     return Check("player", "ok", f"{PACKAGE} {version}".strip())
 

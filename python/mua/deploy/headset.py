@@ -41,16 +41,16 @@ class Headset:
     def serial(self) -> str:
         return str(self._device.serial)
 
-    def ask(self, *words: str, seconds: float = SECONDS) -> tuple[int, str]:
+    def call(self, *words: str, seconds: float = SECONDS) -> tuple[int, str]:
         """Exit code and text of a shell command, whose words reach the program as they are."""
         with self._failing(words[0]):
             # Version 2 of the shell protocol reports exit codes; the library works around devices without it.
             done = self._device.shell2(shlex.join(words), timeout=seconds, v2=True)
             return int(done.returncode), done.output.strip()
 
-    def tell(self, *words: str, seconds: float = SECONDS) -> str:
+    def run(self, *words: str, seconds: float = SECONDS) -> str:
         """The text of a shell command that must succeed."""
-        code, text = self.ask(*words, seconds=seconds)
+        code, text = self.call(*words, seconds=seconds)
         if code != 0:
             raise InputError(f"{self.serial}: {words[0]} failed with {one_line(text) or f'exit code {code}'}")
         return text

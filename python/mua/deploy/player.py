@@ -38,9 +38,9 @@ def install(headset: Headset, apk: Path) -> None:
     content = read_apk(apk)
     try:
         headset.send(content, STAGED)
-        _, text = headset.ask("pm", "install", "-r", "-g", STAGED, seconds=INSTALL_SECONDS)
+        _, text = headset.call("pm", "install", "-r", "-g", STAGED, seconds=INSTALL_SECONDS)
     finally:
-        headset.ask("rm", "-f", STAGED)
+        headset.call("rm", "-f", STAGED)
     if "Success" not in text.split():
         reason = next((f": {fix}" for code, fix in INSTALL_FIXES.items() if code in text), "")
         raise InputError(f"{headset.serial}: installing {apk} failed with {one_line(text) or 'no answer'}{reason}")
@@ -69,7 +69,7 @@ def require_installed(headset: Headset) -> None:
 
 
 def installed(headset: Headset) -> bool:
-    return headset.ask("pm", "path", PACKAGE)[1].startswith("package:")
+    return headset.call("pm", "path", PACKAGE)[1].startswith("package:")
 
 
 def new_run() -> str:
@@ -80,13 +80,13 @@ def new_run() -> str:
 def start(headset: Headset, *arguments: str) -> None:
     """Restart the player with these words on its command line."""
     stop(headset)
-    text = headset.tell("am", "start", "-n", f"{PACKAGE}/{ACTIVITY}", "-e", "unity", " ".join(arguments))
+    text = headset.run("am", "start", "-n", f"{PACKAGE}/{ACTIVITY}", "-e", "unity", " ".join(arguments))
     if "Error" in text:
         raise InputError(f"{headset.serial}: starting {PACKAGE} failed with {one_line(text)}")
 
 
 def stop(headset: Headset) -> None:
-    headset.tell("am", "force-stop", PACKAGE)
+    headset.run("am", "force-stop", PACKAGE)
 
 
 def follow(headset: Headset, run: str, *arguments: str, patience: float | None = None) -> Generator[str, None, None]:
@@ -95,7 +95,7 @@ def follow(headset: Headset, run: str, *arguments: str, patience: float | None =
     Errors: InputError when it crashes, when the log ends, and when no answer of this run comes for `patience` seconds,
     PATIENCE if left out.
     """
-    headset.ask("logcat", "-c")  # lines that remain only cost time: answers carry the run
+    headset.call("logcat", "-c")  # lines that remain only cost time: answers carry the run
     start(headset, *arguments, "-muaRun", run)
     heard = time.monotonic()
     lines = headset.log(*TAGS, silence=TICK)
@@ -117,9 +117,9 @@ def answers(lines: Iterable[str], mark: str, run: str) -> Iterator[str]:
     """The player's answers in this run, without the mark and the run."""
     begin = f"{mark} {run} "
     for line in lines:
-        _, found, said = line.partition(begin)
+        _, found, answer = line.partition(begin)
         if found:
-            yield said.strip()
+            yield answer.strip()
 
 
 def message(line: str) -> str:

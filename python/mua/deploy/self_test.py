@@ -35,13 +35,13 @@ def self_test(headset: Headset) -> list[Case]:
         return collect(answers(lines, MARK, run))
 
 
-def collect(said: Iterable[str]) -> list[Case]:
+def collect(answers: Iterable[str]) -> list[Case]:
     """The cases of one run from its answers, up to the last.
 
     Errors: InputError if an answer is not in the grammar or the figures do not agree.
     """
     announced, cases = None, list[Case]()
-    for text in said:
+    for text in answers:
         if begun := START.fullmatch(text):
             announced = int(begun[1])
         elif ended := END.fullmatch(text):

@@ -22,7 +22,7 @@ AS_SENSED = ("am", "broadcast", "-a", f"{SENSOR}.automation_disable")
 def awake(headset: "Headset") -> Iterator[None]:
     """The headset behaves as if it were worn, so that the player keeps the focus."""
     with _undoing(headset, [AS_SENSED]):
-        headset.tell(*WORN)
+        headset.run(*WORN)
         yield
 
 
@@ -35,13 +35,13 @@ def steady(headset: "Headset", rate: int) -> Iterator[None]:
         "debug.oculus.refreshRate": str(rate),
         "debug.oculus.foveation.dynamic": "0",
     }
-    before = {name: headset.tell("getprop", name) for name in wanted}
+    before = {name: headset.run("getprop", name) for name in wanted}
     undo = [AS_SENSED, *(("setprop", name, value) for name, value in before.items())]
     with _undoing(headset, undo):
-        headset.tell(*WORN)
+        headset.run(*WORN)
         for name, value in wanted.items():
-            headset.tell("setprop", name, value)
-            if (found := headset.tell("getprop", name)) != value:
+            headset.run("setprop", name, value)
+            if (found := headset.run("getprop", name)) != value:
                 raise InputError(f"{headset.serial}: {name} is {found!r} after setting it, expected {value!r}")
         yield
 
@@ -58,6 +58,6 @@ def _undoing(headset: "Headset", commands: Sequence[tuple[str, ...]]) -> Iterato
     finally:
         try:
             for command in commands:
-                headset.tell(*command, seconds=UNDO_SECONDS)
+                headset.run(*command, seconds=UNDO_SECONDS)
         except InputError as error:
             raise InputError(f"{failure}{headset.serial} keeps its measuring settings until it is restarted") from error

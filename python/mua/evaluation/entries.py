@@ -74,8 +74,8 @@ def frames_per_second(device: Device, path: Path, *, size: int) -> float | None:
 
 def sentence(error: Exception) -> str:
     """What went wrong, in one line."""
-    said = " ".join(str(error).split())
-    return said if isinstance(error, InputError) else f"{type(error).__name__}: {said}"
+    text = " ".join(str(error).split())
+    return text if isinstance(error, InputError) else f"{type(error).__name__}: {text}"
 
 
 class _Decoder:

@@ -1,4 +1,4 @@
-"""How near a teacher, avatars and systems are to the images of a capture, by cameras that nobody learnt from.
+"""How near a teacher, avatars and systems are to the images of a capture, by cameras that no training used.
 
 Over white and inside the box around the mask; PSNR over all pixels and colours, SSIM with the usual window.
 """

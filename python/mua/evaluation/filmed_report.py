@@ -15,7 +15,7 @@ from rich.table import Table
 from mua.arrays import Array
 from mua.avatar.rendering import to_bytes
 from mua.evaluation.filmed import IMAGE, SPLITS, FilmedEntry, Judged, Likeness, Shot, Standing, mean
-from mua.evaluation.order import OURS
+from mua.evaluation.settings import OURS
 from mua.fidelity.strips import GAIN, caption, difference
 from mua.files.write import replacing
 
@@ -50,11 +50,11 @@ def table(judged: Sequence[Judged], entries: Sequence[FilmedEntry]) -> Table:
 
 
 def markdown(judged: Sequence[Judged], entries: Sequence[FilmedEntry], about: Sequence[str]) -> str:
-    """The table under what is said of it."""
+    """The table below the sentences about it."""
     heads = headings(judged)
     lines = [heads, ["---"] * len(heads), *rows(judged, entries)]
-    said = "\n".join(f"- {sentence}" for sentence in about)
-    return f"{said}\n\n" + "\n".join(f"| {' | '.join(line)} |" for line in lines) + "\n"
+    listed = "\n".join(f"- {sentence}" for sentence in about)
+    return f"{listed}\n\n" + "\n".join(f"| {' | '.join(line)} |" for line in lines) + "\n"
 
 
 def as_csv(judged: Sequence[Judged]) -> str:
@@ -72,7 +72,7 @@ def as_json(
     judged: Sequence[Judged], entries: Sequence[FilmedEntry], about: Sequence[str], found: Sequence[Standing]
 ) -> str:
     """Costs and means of every entry, the points of the curve, and how ours stands; null where there is no number."""
-    told = [
+    rows = [
         {
             "name": one.name,
             "system": one.system or None,
@@ -82,19 +82,19 @@ def as_json(
         }
         for one in entries
     ]
-    whole = {"about": list(about), "entries": told, "standings": [asdict(one) for one in found]}
+    whole = {"about": list(about), "entries": rows, "standings": [asdict(one) for one in found]}
     return json.dumps(whole, indent=1, allow_nan=False) + "\n"
 
 
 def nobody_there(shots: Sequence[Shot]) -> list[str]:
     """A sentence for each camera of which some views show nobody."""
-    told = []
+    sentences = []
     for camera in dict.fromkeys(shot.camera for shot in shots):
         own = [shot for shot in shots if shot.camera == camera]
         places = ", ".join(f"{shot.clip} {shot.frame}" for shot in own[:NAMED]) + (", ..." if len(own) > NAMED else "")
         counted = "1 view, which counts" if len(own) == 1 else f"{len(own)} views, which count"
-        told.append(f"Camera {camera}: nobody is seen in {counted} nowhere: {places}.")
-    return told
+        sentences.append(f"Camera {camera}: nobody is seen in {counted} nowhere: {places}.")
+    return sentences
 
 
 def write_images(folder: Path, one: Judged) -> None:

@@ -10,7 +10,6 @@ import numpy as np
 
 from mua.arrays import Array
 from mua.avatar.camera import Camera, orbit
-from mua.errors import InputError
 from mua.gpu import Device
 from mua.player.draw import SplatRenderer, draw_image, image_format
 from mua.player.splats import SplatFrame
@@ -22,8 +21,6 @@ from mua.rig.rig import Rig
 
 FIRST_VIEW = np.radians(30)  # azimuth in the world, from +Z towards +X
 ELEVATION = np.radians(8)
-SMALLEST, LARGEST = 176, 8192  # pixels; MS-SSIM halves an image four times and then needs 11
-MOST_VIEWS = 16
 
 
 class Studio:
@@ -38,11 +35,7 @@ class Studio:
         views: int,
         size: int,  # pixels along a side
     ) -> None:
-        """Errors: InputError where there are too few or many views or pixels, or the device has too little memory."""
-        if not SMALLEST <= size <= LARGEST:
-            raise InputError(f"--size {size}: expected {SMALLEST} to {LARGEST} pixels")
-        if not 1 <= views <= MOST_VIEWS:
-            raise InputError(f"--views {views}: expected 1 to {MOST_VIEWS}")
+        """Raises InputError where the device has too little memory."""
         self._device, self._rig, self._screen = device, rig, (size, size)
         self.azimuths = [float(FIRST_VIEW + turn) for turn in 2 * np.pi * np.arange(views) / views]
         boxes = [frame_boxes(rig, _still(frame)) - root_positions(rig, _still(frame))[:, None] for frame in frames]

@@ -47,31 +47,31 @@ def legend(results: Sequence[Result], setting: Setting) -> list[str]:
     counted = " and ".join(f"{count} {kind}" for kind, count in setting.frames.items() if count)
     budget = f"{setting.seconds:g} s" if setting.steps is None else f"{setting.steps} steps"
     views = "1 view" if setting.views == 1 else f"{setting.views} views"
-    said = [
+    sentences = [
         f"Means over {counted} frames of {setting.recording}, from {views} of {setting.size} x {setting.size} pixels, "
         f"beside the teacher. The figure covers {setting.covered:.0%} of an image, the rest is black.",
         "Drawn on the teacher's mesh of the frame"
         + (", but for rows that say own mesh." if any(_meshed(result) for result in results) else "."),
     ]
     if any(entry.picture and not entry.cost.storage and entry.name != MEAN for entry in entries):
-        said.append(f"Systems were trained for {budget} each, at the sizes of preset {setting.preset}.")
+        sentences.append(f"Systems were trained for {budget} each, at the sizes of preset {setting.preset}.")
     less = "FLIP and LPIPS" if setting.lpips else "FLIP"
-    said.append(f"PSNR (dB), SSIM and MS-SSIM: more is nearer; {less}: less is nearer.")
-    said.append("GFLOPs: of what turns a pose into a texture and a mesh; posing and drawing are left out.")
-    said.append(f"MB: {'of a file; else ' if files else ''}4 bytes a parameter.")
+    sentences.append(f"PSNR (dB), SSIM and MS-SSIM: more is nearer; {less}: less is nearer.")
+    sentences.append("GFLOPs: of what turns a pose into a texture and a mesh; posing and drawing are left out.")
+    sentences.append(f"MB: {'of a file; else ' if files else ''}4 bytes a parameter.")
     if any(cost.fps is not None for cost in costs):
-        said.append(f"FPS: of files, with posing and drawing, on {setting.device}.")
-    said.append(
+        sentences.append(f"FPS: of files, with posing and drawing, on {setting.device}.")
+    sentences.append(
         f"LPIPS: {setting.lpips}, times 1000." if setting.lpips else "LPIPS: no weights given (--lpips-weights FILE)."
     )
-    return [*said, "The recording does not say whether its teacher is a capture or a simulation."]
+    return [*sentences, "The recording does not say whether its teacher is a capture or a simulation."]
 
 
 def tables(results: Sequence[Result], setting: Setting) -> Group:
     """For the terminal: how near images come, what it costs, what failed, and what the figures mean."""
     failed = [f"{result.entry.name} failed: {result.failure}" for result in results if result.failure]
-    said = [Text(sentence) for sentence in (*failed, *legend(results, setting))]
-    return Group(_scores_table(results, setting), _costs_table(results), *said)
+    texts = [Text(sentence) for sentence in (*failed, *legend(results, setting))]
+    return Group(_scores_table(results, setting), _costs_table(results), *texts)
 
 
 def _scores_table(results: Sequence[Result], setting: Setting) -> Table:
@@ -157,7 +157,7 @@ def as_csv(results: Sequence[Result]) -> str:
 
 def as_json(results: Sequence[Result], setting: Setting) -> str:
     """Everything, every image's scores included; null where there is no number."""
-    told = [
+    systems = [
         {
             "system": result.entry.name,
             "failure": result.failure,
@@ -167,7 +167,7 @@ def as_json(results: Sequence[Result], setting: Setting) -> str:
         }
         for result in results
     ]
-    return json.dumps({"setting": asdict(setting), "systems": told}, indent=1, allow_nan=False)
+    return json.dumps({"setting": asdict(setting), "systems": systems}, indent=1, allow_nan=False)
 
 
 def costs_of(result: Result) -> list[str]:

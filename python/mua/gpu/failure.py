@@ -19,7 +19,7 @@ def naming(subject: str) -> Iterator[None]:
 
 def _reason(error: Exception) -> str:
     """wgpu gives lost devices and exhausted memory as validation errors too: its messages distinguish them."""
-    said = " ".join(str(error).split())
-    if isinstance(error, wgpu.GPUOutOfMemoryError) or "not enough memory" in said.lower():
+    text = " ".join(str(error).split())
+    if isinstance(error, wgpu.GPUOutOfMemoryError) or "not enough memory" in text.lower():
         return "the device is out of memory"
-    return "the device was lost" if "lost" in said.lower() else f"the device refused: {said}"
+    return "the device was lost" if "lost" in text.lower() else f"the device refused: {text}"

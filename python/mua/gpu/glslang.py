@@ -55,6 +55,6 @@ def result(path: Path, entry: str, output: Path, done: subprocess.CompletedProce
     """The SPIR-V that a compiler wrote to `output`; raises InputError with its first error where it refused."""
     if done.returncode or not output.is_file():
         lines = [line.strip() for line in (done.stdout + done.stderr).splitlines() if line.strip()]
-        message = next(filter(ERROR.search, lines), lines[-1] if lines else "the compiler said nothing")
+        message = next(filter(ERROR.search, lines), lines[-1] if lines else "the compiler printed nothing")
         raise InputError(f"{path}: {entry} does not compile: {message}")
     return output.read_bytes()

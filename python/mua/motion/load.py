@@ -33,7 +33,7 @@ def load_motions(
     *,
     mapping: Mapping[str, str] | None,  # joint of `skeleton` to joint of the file, before any match by name
     rate: float,  # frames per second of the clips returned
-    said: Mapping[str, str] | None = None,  # joint of `skeleton` to role, where the character's file itself says it
+    roles: Mapping[str, str] | None = None,  # joint of `skeleton` to role, where the character's file itself says it
     feet: Feet = "auto",  # whether standing feet are held in place
     refuse: bool = True,  # whether motion that moves no arm, leg or spine of the character is an error, else a note
 ) -> list[LoadedMotion]:
@@ -43,7 +43,9 @@ def load_motions(
     Errors: InputError naming the file where it cannot be read or moves no arm, leg or spine of the character.
     """
     return [
-        _put_on(path, source, skeleton, mapping=mapping, rate=rate, said=said, feet=feet, refuse=refuse and not mapping)
+        _put_on(
+            path, source, skeleton, mapping=mapping, rate=rate, roles=roles, feet=feet, refuse=refuse and not mapping
+        )
         for source in read_motion(path)
     ]
 
@@ -81,7 +83,7 @@ def _put_on(
     *,
     mapping: Mapping[str, str] | None,
     rate: float,
-    said: Mapping[str, str] | None,
+    roles: Mapping[str, str] | None,
     feet: Feet,
     refuse: bool,
 ) -> LoadedMotion:
@@ -91,8 +93,8 @@ def _put_on(
             source.skeleton,
             skeleton,
             None if same else mapping,
-            source_said=source.said,
-            target_said=said,
+            source_stated=source.stated,
+            target_stated=roles,
             source_poses=source.places(POSES),
         )
         if same:

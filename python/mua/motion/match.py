@@ -37,8 +37,8 @@ def match_joints(
     target: Skeleton,
     mapping: Mapping[str, str] | None = None,  # target to source joint names
     *,
-    source_said: Mapping[str, str] | None = None,  # joint name to role, where the source's file itself says it
-    target_said: Mapping[str, str] | None = None,
+    source_stated: Mapping[str, str] | None = None,  # joint name to role, where the source's file itself says it
+    target_stated: Mapping[str, str] | None = None,
     source_poses: Array | None = None,  # [P, J, 3] places of the source's joints in some frames
 ) -> Matches:
     """Find the source chain that moves each target joint: by `mapping`, then by role, then by equal names.
@@ -49,8 +49,8 @@ def match_joints(
     Errors: InputError if `mapping` names an unknown joint.
     """
     chains = _match_equal_names(source, target)
-    source_roles, source_notes = _roles(source, source_said, "motion", source_poses)
-    target_roles, target_notes = _roles(target, target_said, "character")
+    source_roles, source_notes = _roles(source, source_stated, "motion", source_poses)
+    target_roles, target_notes = _roles(target, target_stated, "character")
     for side in SIDES:
         thumb, *fingers = (f"{side} {finger}" for finger in FINGERS)
         if not any(finger in source_roles for finger in fingers):
@@ -69,14 +69,14 @@ def match_joints(
 
 
 def _roles(
-    skeleton: Skeleton, said: Mapping[str, str] | None, owner: str, poses: Array | None = None
+    skeleton: Skeleton, stated: Mapping[str, str] | None, owner: str, poses: Array | None = None
 ) -> tuple[Roles, tuple[str, ...]]:
     """Joints of every role by the file and by names, and by places and lengths where these leave out limbs."""
-    found = find_roles(skeleton, said)
+    found = find_roles(skeleton, stated)
     notes: tuple[str, ...] = ()
     if placed := _placed(skeleton, found, poses):
         listed = ", ".join(f"{name} the {role.replace('_', ' ')}" for name, role in placed.items() if " " in role)
-        found = find_roles(skeleton, {**placed, **(said or {})})
+        found = find_roles(skeleton, {**placed, **(stated or {})})
         notes = (f"The {owner}'s joints are recognised by their positions, because their names are unknown: {listed}.",)
     found, mended = with_whole_limbs(skeleton, found, poses)
     if mended:

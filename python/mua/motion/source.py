@@ -17,7 +17,7 @@ class SourceMotion:
     skeleton: Skeleton
     clip: Clip
     notes: tuple[str, ...] = ()  # decisions of the reader that the user should know, a sentence each
-    said: Mapping[str, str] = field(default_factory=dict)  # joint to role, where the file itself says it
+    stated: Mapping[str, str] = field(default_factory=dict)  # joint to role, where the file itself says it
 
     def places(self, poses: int) -> Array:
         """Where the joints are [P, J, 3] in at most `poses` frames, spread over the clip."""

@@ -6,6 +6,7 @@ Kept a plain list in the order of the kernels, as unity-package/Runtime/ChannelD
 from dataclasses import dataclass
 
 from mua.gpu import Buffer, Commands, Device
+from mua.gpu.kernel import Kernel
 from mua.kernels.inverse_dwt import BATCH, ROWS, plane_bytes
 from mua.player.buffers import AvatarBuffers, BandBuffers, BranchBuffers, BranchLevel, LayerBuffers, LevelBuffers
 
@@ -72,32 +73,29 @@ class ChannelDecoder:
         x = components
         for i, layer in enumerate(mlp):
             y = self.activations[i % 2]
-            commands.dispatch(
-                self._mlp_matmul,
-                (groups(layer.outputs, LAYER_ROWS), 1, 1),
-                {"weight": layer.weight.words, "bias": layer.bias.words, "x": x, "y": y},
-                weight_layout=layer.weight.layout,
-                bias_layout=layer.bias.layout,
-                inputs=layer.inputs,
-                outputs=layer.outputs,
-                relu=int(layer is not mlp[-1]),
-            )
+            self._layer(commands, self._mlp_matmul, layer, x, y, LAYER_ROWS, relu=layer is not mlp[-1])
             x = y
         return x
 
-    def _coarse(self, commands: Commands, channels: ChannelSet) -> None:
-        basis = self.avatar.mesh
-        coefficients = self._mlp(commands, self.avatar.coarse_mlp, channels.components)
+    def _layer(
+        self, commands: Commands, kernel: Kernel, layer: LayerBuffers, x: Buffer, y: Buffer, rows: int, *, relu: bool
+    ) -> None:
+        """One fully connected layer, or the basis of the mesh as one; `rows` outputs a group."""
         commands.dispatch(
-            self._mlp_matmul_transposed,
-            (groups(basis.outputs, MESH_COLUMNS), 1, 1),
-            {"weight": basis.weight.words, "bias": basis.bias.words, "x": coefficients, "y": channels.mesh},
-            weight_layout=basis.weight.layout,
-            bias_layout=basis.bias.layout,
-            inputs=basis.inputs,
-            outputs=basis.outputs,
-            relu=0,
+            kernel,
+            (groups(layer.outputs, rows), 1, 1),
+            {"weight": layer.weight.words, "bias": layer.bias.words, "x": x, "y": y},
+            weight_layout=layer.weight.layout,
+            bias_layout=layer.bias.layout,
+            inputs=layer.inputs,
+            outputs=layer.outputs,
+            relu=int(relu),
         )
+
+    def _coarse(self, commands: Commands, channels: ChannelSet) -> None:
+        basis, kernel = self.avatar.mesh, self._mlp_matmul_transposed
+        coefficients = self._mlp(commands, self.avatar.coarse_mlp, channels.components)
+        self._layer(commands, kernel, basis, coefficients, channels.mesh, MESH_COLUMNS, relu=False)
 
     def _branch(
         self, commands: Commands, branch: BranchBuffers, shown: BranchLevel, channels: ChannelSet, *, first_row: int

@@ -1,6 +1,6 @@
 """Draws sorted splats into a texture, and reads images of them back."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -87,17 +87,28 @@ def draw_image(device: Device, renderer: SplatRenderer, splats: SortedSplats, ca
 
     The renderer's format is one of CHANNEL_TYPES. Errors: InputError where the device cannot hold so large an image.
     """
-    width, height = cameras[0].screen
-    size = (len(cameras) * width, height, 1)
-    with naming(f"image of {size[0]} x {size[1]} pixels"):
-        usage = wgpu.TextureUsage.RENDER_ATTACHMENT | wgpu.TextureUsage.COPY_SRC
-        target = device.wgpu.create_texture(size=size, format=renderer.color_format, usage=usage)
+
+    def draw(target: wgpu.GPUTexture) -> None:
         encoder = device.wgpu.create_command_encoder()
         cleared = {"view": target.create_view(), "load_op": "clear", "store_op": "store", "clear_value": (0, 0, 0, 0)}
         render_pass = encoder.begin_render_pass(color_attachments=[cleared])
         renderer.draw(render_pass, splats, cameras)
         render_pass.end()
         device.wgpu.queue.submit([encoder.finish()])
+
+    return image_of(device, renderer.color_format, cameras, draw)
+
+
+def image_of(
+    device: Device, color_format: str, cameras: Sequence[Camera], draw: Callable[[wgpu.GPUTexture], None]
+) -> Array:
+    """The image [H, E W, 4] float32 that `draw` makes of a texture for all eyes side by side."""
+    width, height = cameras[0].screen
+    size = (len(cameras) * width, height, 1)
+    with naming(f"image of {size[0]} x {size[1]} pixels"):
+        usage = wgpu.TextureUsage.RENDER_ATTACHMENT | wgpu.TextureUsage.COPY_SRC
+        target = device.wgpu.create_texture(size=size, format=color_format, usage=usage)
+        draw(target)
         return read_image(device, target)
 
 

@@ -7,8 +7,7 @@ import wgpu
 from mua.arrays import Array
 from mua.avatar.camera import Camera
 from mua.gpu import Device
-from mua.gpu.failure import naming
-from mua.player.draw import IMAGE_FORMAT, SplatRenderer, read_image, set_eye
+from mua.player.draw import IMAGE_FORMAT, SplatRenderer, image_of, set_eye
 from mua.player.frame import AvatarFrame
 from mua.player.overlays import Overlays
 from mua.player.splats import SplatFrame
@@ -101,10 +100,4 @@ def draw_picture(device: Device, scene: Scene, cameras: Sequence[Camera], toggle
 
     Errors: InputError where the device cannot hold so large an image.
     """
-    width, height = cameras[0].screen
-    size = (len(cameras) * width, height, 1)
-    with naming(f"image of {size[0]} x {size[1]} pixels"):
-        usage = wgpu.TextureUsage.RENDER_ATTACHMENT | wgpu.TextureUsage.COPY_SRC
-        target = device.wgpu.create_texture(size=size, format=scene.color_format, usage=usage)
-        scene.draw(target, cameras, toggles)
-        return read_image(device, target)
+    return image_of(device, scene.color_format, cameras, lambda target: scene.draw(target, cameras, toggles))

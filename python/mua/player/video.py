@@ -1,4 +1,4 @@
-"""Videos and animations from images, written whole or not at all."""
+"""Videos and animations from images, written atomically."""
 
 from collections.abc import Iterator
 from contextlib import suppress
@@ -47,7 +47,7 @@ def write_video(
 ) -> None:
     """Write a video or an animation that repeats.
 
-    Errors: InputError where the encoder stops, with what it said.
+    Errors: InputError where the encoder stops, with what it printed.
     """
     first = next(pictures)
     height, width, channels = first.shape
@@ -55,13 +55,13 @@ def write_video(
     assert encoding is not None, "options were checked"
     layout = "rgba" if channels == 4 else "rgb24"
     source = ("-f", "rawvideo", "-pix_fmt", layout, "-s", f"{width}x{height}", "-r", str(rate), "-i", "-")
-    with replacing(path) as temporary, TemporaryFile() as said:
+    with replacing(path) as temporary, TemporaryFile() as log:
         command = [imageio_ffmpeg.get_ffmpeg_exe(), "-y", "-v", "error", *source, *encoding, str(temporary)]
-        encoder = Popen(command, stdin=PIPE, stdout=DEVNULL, stderr=said)
-        with suppress(BrokenPipeError), encoder:  # the encoder may stop, and has then said why
+        encoder = Popen(command, stdin=PIPE, stdout=DEVNULL, stderr=log)
+        with suppress(BrokenPipeError), encoder:  # the encoder may stop, and has then printed why
             assert encoder.stdin is not None  # it is piped above
             for picture in chain([first], pictures):
                 encoder.stdin.write(picture.tobytes())
         if encoder.returncode:
-            said.seek(0)
-            raise InputError(f"{path}: the encoder stopped: {' '.join(said.read().decode().split())}")
+            log.seek(0)
+            raise InputError(f"{path}: the encoder stopped: {' '.join(log.read().decode().split())}")

@@ -93,7 +93,7 @@ _NUMBERED_FINGER = re.compile(r"finger[\s_.\-]?(\d)", re.IGNORECASE)
 
 def roles(
     skeleton: Skeleton,
-    said: Mapping[str, str] | None = None,  # joint name to one of ROLES, where the file states it
+    stated: Mapping[str, str] | None = None,  # joint name to one of ROLES, where the file states it
 ) -> Roles:
     """Joints of every role, from the root outwards: from the file where it states them, else from the names."""
     found: dict[str, list[int]] = {}
@@ -106,10 +106,10 @@ def roles(
         _settle_side(found, side)
         _leave_out_targets(skeleton, found, side)
     chains = {role: _one_chain(skeleton, joints) for role, joints in found.items()}
-    stated = _stated(skeleton, said or {})
-    taken = {joint for joints in stated.values() for joint in joints}
+    from_file = _stated(skeleton, stated or {})
+    taken = {joint for joints in from_file.values() for joint in joints}
     left = {role: tuple(joint for joint in joints if joint not in taken) for role, joints in chains.items()}
-    chains = {role: joints for role, joints in left.items() if joints and role not in stated} | stated
+    chains = {role: joints for role, joints in left.items() if joints and role not in from_file} | from_file
     _keep_to_limbs(skeleton, chains)
     _settle_legs(skeleton, chains)
     _settle_trunk(skeleton, chains)
@@ -122,11 +122,11 @@ def limb_count(skeleton: Skeleton) -> int:
     return sum(f"{side} {part}" in found for side in SIDES for part in ("upper_arm", "forearm", "thigh", "shin"))
 
 
-def _stated(skeleton: Skeleton, said: Mapping[str, str]) -> Roles:
+def _stated(skeleton: Skeleton, stated: Mapping[str, str]) -> Roles:
     found: dict[str, list[int]] = {}
     for joint, name in enumerate(skeleton.names):
-        if name in said:
-            found.setdefault(said[name], []).append(joint)
+        if name in stated:
+            found.setdefault(stated[name], []).append(joint)
     return {role: tuple(joints) for role, joints in found.items()}
 
 

@@ -1,4 +1,4 @@
-"""The shard that a writer gathers, and how it reaches the disk: whole or not at all."""
+"""The shard that a writer gathers, and its atomic write to the disk."""
 
 import io
 import os

@@ -29,9 +29,9 @@ def main() -> None:
     try:
         _record(asked, answers)
     except InputError as error:
-        _tell(answers, FAILED, str(error))
+        _send(answers, FAILED, str(error))
     except MemoryError:
-        _tell(answers, FAILED, "a process that records has too little memory; --jobs 1 needs the least")
+        _send(answers, FAILED, "a process that records has too little memory; --jobs 1 needs the least")
     os._exit(0)  # without waiting for the thread that still listens
 
 
@@ -39,7 +39,7 @@ def _record(asked: "queue.Queue[Any]", answers: IO[bytes]) -> None:
     job: Job = asked.get()
     teacher, parts = job.teacher(), divide(job.plan)
     reference = cache(lambda: first_texture(teacher, job.plan))
-    _tell(answers, ENDED, None)
+    _send(answers, ENDED, None)
     while (part := asked.get()) is not None:
         record_part(
             teacher,
@@ -47,9 +47,9 @@ def _record(asked: "queue.Queue[Any]", answers: IO[bytes]) -> None:
             part_directory(job.directory, part, len(parts)),
             reference=reference,
             rate=job.rate,
-            progress=lambda done: _tell(answers, RECORDED, done),
+            progress=lambda done: _send(answers, RECORDED, done),
         )
-        _tell(answers, ENDED, part)
+        _send(answers, ENDED, part)
 
 
 def _listen(requests: IO[bytes], asked: "queue.Queue[Any]") -> None:
@@ -61,7 +61,7 @@ def _listen(requests: IO[bytes], asked: "queue.Queue[Any]") -> None:
         os._exit(1)
 
 
-def _tell(answers: IO[bytes], kind: str, value: object) -> None:
+def _send(answers: IO[bytes], kind: str, value: object) -> None:
     pickle.dump((kind, value), answers)
     answers.flush()
 

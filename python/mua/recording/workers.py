@@ -80,7 +80,7 @@ class _Crew:
         worker.listener = threading.Thread(target=self._listen, args=(worker,), daemon=True)
         worker.listener.start()
 
-    def tell(self, worker: _Worker, message: object) -> None:
+    def send(self, worker: _Worker, message: object) -> None:
         assert worker.process.stdin is not None
         with suppress(OSError):  # it has ended; the listening thread reports that
             pickle.dump(message, worker.process.stdin)
@@ -92,9 +92,9 @@ class _Crew:
             worker.end()
 
     def _listen(self, worker: _Worker) -> None:
-        """Give a worker its job, then hear what it says; in a thread, as it reads the job once it has loaded all."""
+        """Give a worker its job, then queue its messages; in a thread, as it reads the job once it has loaded all."""
         assert worker.process.stdout is not None
-        self.tell(worker, self.job)
+        self.send(worker, self.job)
         try:
             while True:
                 self.heard.put((worker, pickle.load(worker.process.stdout)))
@@ -172,11 +172,11 @@ def _work_off(crew: _Crew, left: list[int], progress: Callable[[int, int], None]
         if kind == RECORDED and worker.part is not None:
             crew.done[worker.part] = value
             progress(sum(crew.done.values()), len(crew.workers))
-        if kind == ENDED:  # also said once when a worker is ready
+        if kind == ENDED:  # also sent once when a worker is ready
             running -= worker.part is not None
             worker.part = waiting.pop(0) if waiting else None
             worker.idle = worker.part is None
-            crew.tell(worker, worker.part)
+            crew.send(worker, worker.part)
 
 
 def _lost(worker: _Worker) -> str:

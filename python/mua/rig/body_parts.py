@@ -31,22 +31,22 @@ def body_parts(
     skin_indices: Array,  # [V, 8]
     skin_weights: Array,  # [V, 8]
     *,
-    said: Mapping[str, str] | None = None,  # joint to role, where the file states it
+    stated: Mapping[str, str] | None = None,  # joint to role, where the file states it
 ) -> Array:
     """The part of each triangle [F], as an index of BODY_PARTS: the part of the joints that move it most.
 
     A joint without a part of its own belongs to its parent's, so that fingers are hands and eyes are the head.
     """
-    part = _parts_of_joints(skeleton, said)
+    part = _parts_of_joints(skeleton, stated)
     shares = np.zeros((len(skin_indices), len(BODY_PARTS)))
     np.add.at(shares, (np.arange(len(skin_indices))[:, None], part[skin_indices]), skin_weights)
     return np.asarray(shares[faces].sum(axis=1).argmax(axis=1))
 
 
-def _parts_of_joints(skeleton: Skeleton, said: Mapping[str, str] | None) -> Array:
+def _parts_of_joints(skeleton: Skeleton, stated: Mapping[str, str] | None) -> Array:
     """The part of each joint [J]; joints with unknown names are the body."""
     named = {
-        joint: _OF_ROLE.get(role.split()[-1]) for role, joints in roles(skeleton, said).items() for joint in joints
+        joint: _OF_ROLE.get(role.split()[-1]) for role, joints in roles(skeleton, stated).items() for joint in joints
     }
     part = np.full(len(skeleton.names), _BODY)
     for joint, parent in enumerate(skeleton.parents):

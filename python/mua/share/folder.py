@@ -1,4 +1,4 @@
-"""Writes a site as a folder, whole or not at all, in place of an earlier one."""
+"""Writes a site as a folder, atomically, in place of an earlier one."""
 
 import os
 import shutil

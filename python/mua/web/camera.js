@@ -14,7 +14,7 @@
 
 export const FOV = Math.PI / 6; // vertical; a portrait lens
 export const NEAR = 0.02; // metres, at most
-const NEAR_SHARE = 0.01; // of the distance of what is looked at: so near a small figure is seen whole
+const NEAR_SHARE = 0.01; // of the distance of what is looked at: so near a small figure is not cut
 const EYE_DISTANCE = 0.063; // metres, of an adult
 const FILL = 0.92; // of the picture's half size, that the framed box reaches
 

@@ -1,4 +1,4 @@
-// Principal components of the motion descriptor, held within what training showed: what the networks read. Reference:
+// Principal components of the motion descriptor, limited to the range of training: the input of the networks. Reference:
 // python/mua/pose/components.py, and sections 3.5 to 3.7 of schemas/README.md.
 
 /** @typedef {import("./format/read.js").Encoding} Encoding */

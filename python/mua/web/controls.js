@@ -188,8 +188,8 @@ export class Controls {
   /** Say how far outside of training the poses are that are shown, in the order of the avatars. */
   showOutside() {
     const shares = this.avatar.avatars.map(({ outsideTraining }) => `${Math.round(100 * outsideTraining)} %`);
-    const said = shares.length ? `Outside of training: ${shares.join(", ")}` : "";
-    if (this.outside.textContent !== said) this.outside.textContent = said;
+    const text = shares.length ? `Outside of training: ${shares.join(", ")}` : "";
+    if (this.outside.textContent !== text) this.outside.textContent = text;
   }
 
   /** What changes with every picture. */
@@ -200,8 +200,8 @@ export class Controls {
     if (!player || !clip) return;
     this.scrub.max = String(clip.seconds);
     this.scrub.value = String(player.time);
-    const said = `${player.time.toFixed(1)} / ${clip.seconds.toFixed(1)} s`;
-    if (this.clock.textContent !== said) this.clock.textContent = said;
+    const text = `${player.time.toFixed(1)} / ${clip.seconds.toFixed(1)} s`;
+    if (this.clock.textContent !== text) this.clock.textContent = text;
     this.scrub.setAttribute("aria-valuetext", `${player.time.toFixed(1)} of ${clip.seconds.toFixed(1)} seconds`);
     this.pictures += 1;
     this.showTimes(false);

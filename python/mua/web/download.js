@@ -24,7 +24,7 @@ export class Download {
     this.content = new Uint8Array(); // of that size
     this.stages = new Stages(this.content.buffer);
     /** @type {Uint8Array[]} */
-    this.beyond = []; // what a server sends without having said so
+    this.beyond = []; // bytes beyond the length that the server announced
   }
 
   /** The end of the newest stage that has arrived and was not returned before; 0 if there is none. */

@@ -122,6 +122,6 @@ async function shown(/** @type {ArrayBuffer} */ content, /** @type {number} */ e
   try {
     preview(await readStage(content, end));
   } catch (error) {
-    if (!(error instanceof AvatarError)) throw error; // what is wrong is said of the whole file
+    if (!(error instanceof AvatarError)) throw error; // reading the whole file says what is wrong
   }
 }

@@ -1,4 +1,4 @@
-// How avatars come into an element: one after the other, each drawn as soon as a part of it is there, and what went wrong said.
+// How avatars come into an element: one after the other, each drawn as soon as a part of it is there, and every failure shown.
 
 import { AvatarError, createPlayer } from "./player.js";
 
@@ -137,7 +137,7 @@ export class Loading {
       this.#closed = opening.then(
         (player) => player.dispose(),
         () => {},
-      ); // why it did not open has been said
+      ); // the reader has seen why it did not open
   }
 
   /** Say what went wrong. */

@@ -208,10 +208,10 @@ class BandNetwork(Network):
         total += self.ll.flops(side) if self.ll is not None else 0
         return total + sum(n.flops(side << i) for i, level in enumerate(self.details) for n in level)
 
-    def learnt(self) -> int:
+    def parameter_count(self) -> int:
         """The mean is that of the subbands and of what the finest levels add to it, as in our file."""
         side = self.maps[0].size
-        return super().learnt() + CHANNELS * 16 * side**2  # LL, 3 D3 and 3 D2: 1 + 3 + 3 x 4
+        return super().parameter_count() + CHANNELS * 16 * side**2  # LL, 3 D3 and 3 D2: 1 + 3 + 3 x 4
 
 
 def ours(sizes: Sizes) -> BandNetwork:

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter
 
 from mua.evaluation.filmed import SPLITS, TEACHER, FilmedEntry, Judged, mean
-from mua.evaluation.order import OURS, SYSTEM_NAMES
+from mua.evaluation.settings import OURS, SYSTEM_NAMES
 
 DPI = 120
 COSTS: dict[str, Callable[[FilmedEntry], float]] = {

@@ -13,14 +13,12 @@ from mua.avatar.decode import Splats, pose_splats
 from mua.evaluation.cost import Cost, learnt_cost
 from mua.evaluation.entries import sentence
 from mua.evaluation.filmed import FilmedEntry, Show
-from mua.evaluation.order import OURS
+from mua.evaluation.settings import OURS
 from mua.pose.clip import Clip
 from mua.pose.windows import window_of
-from mua.training.checkpoint import Checkpoints
-from mua.training.optimise import Report
 from mua_research.motion import motion_of
 from mua_research.network import NetworkSystem
-from mua_research.system import Budget, Sizes, TrainingFrames
+from mua_research.system import Sizes, Training, TrainingFrames
 from mua_research.systems import SYSTEMS, train_or_restore
 
 STEPS_OF_TWO = 8  # sizes that are tried for equal cost from one scale to its double
@@ -69,26 +67,22 @@ def cost_of(one: Sized, sizes: Sizes) -> Cost:
 
 def trained_entries(
     wanted: Sequence[Sized],
-    frames: TrainingFrames,
+    training: Training,
     *,
-    budget: Budget,
-    checkpoints: Checkpoints,  # of this recording, these settings and this budget
-    begin: Callable[[str], None],  # hears what is trained next
-    report: Report,
-    failed: Callable[[str], None],
+    begin: Callable[[str], None],  # called with the name of what is trained next
+    failed: Callable[[str], None],  # called with a sentence
 ) -> Iterator[FilmedEntry]:
-    """Train one after the other, or take up what an earlier run made; one that fails is told, and left out."""
+    """Train one after the other, or take up what an earlier run made; one that fails is reported, and left out."""
     for one in wanted:
         begin(one.name)
-        system = _untrained(one, frames.sizes)
-        stage = f"system {one.name}"
+        system = _untrained(one, training.frames.sizes)
         try:
-            train_or_restore(system, frames, stage=stage, budget=budget, checkpoints=checkpoints, report=report)
+            train_or_restore(system, training, one.name)
         except Exception as error:  # whatever one system stumbles over, the others go on
             failed(f"{one.name}: {sentence(error)}")
             continue
         cost = learnt_cost(system.parameters, system.flops)
-        yield FilmedEntry(one.name, _shown(system, frames), cost, one.system, one.scale)
+        yield FilmedEntry(one.name, _shown(system, training.frames), cost, one.system, one.scale)
 
 
 def _untrained(one: Sized, sizes: Sizes) -> NetworkSystem:

@@ -1,4 +1,4 @@
-"""The systems that an order names, trained on what its teacher shows of a capture's training poses."""
+"""The systems of a comparison with images, trained on what its teacher shows of a capture's training poses."""
 
 from dataclasses import replace
 from functools import partial
@@ -9,7 +9,7 @@ from mua.baking.recorded import recording_key
 from mua.capture import Capture
 from mua.cli.display import Display
 from mua.evaluation.filmed import FilmedEntry, require_skeleton
-from mua.evaluation.order import ALL, SYSTEM_NAMES, EvaluationOrder
+from mua.evaluation.settings import ALL, SYSTEM_NAMES, EvaluationSettings
 from mua.pose.encoding import RATE
 from mua.recording import Recording
 from mua.recording.workers import record_by_workers
@@ -21,40 +21,37 @@ from mua_research.training import prepare
 
 
 def system_entries(
-    order: EvaluationOrder, capture: Capture, work: Path, display: Display
+    evaluation: EvaluationSettings, capture: Capture, work: Path, display: Display
 ) -> tuple[list[FilmedEntry], list[str]]:
-    """The systems at their sizes, and what is said of them.
+    """The systems at their sizes, and sentences about their training.
 
     Errors: InputError where the recording to train on is of another character than the capture's.
     """
-    assert order.teacher is not None
-    settings = replace(preset(order.preset), seed=order.seed)
-    if order.train_on is None:
-        recording = _record(order.teacher, capture, settings.frames, work, display)
+    assert evaluation.teacher is not None
+    settings = replace(preset(evaluation.preset), seed=evaluation.seed)
+    if evaluation.train_on is None:
+        recording = _record(evaluation.teacher, capture, settings.frames, work, display)
     else:
-        recording = Recording(order.train_on)
-        require_skeleton(f"--train-on {order.train_on}", recording.rig.skeleton, capture.surfaces.skeleton)
+        recording = Recording(evaluation.train_on)
+        require_skeleton(f"--train-on {evaluation.train_on}", recording.rig.skeleton, capture.surfaces.skeleton)
     settings = filmed_settings(settings, recording.rig.texels.size)
-    training = prepare(order, recording, settings, work, display)
-    names = SYSTEM_NAMES if ALL in order.system else tuple(dict.fromkeys(order.system))
+    training = prepare(evaluation, recording, settings, work, display)
+    names = SYSTEM_NAMES if ALL in evaluation.system else tuple(dict.fromkeys(evaluation.system))
     failures: list[str] = []
     trained = trained_entries(
-        sized(names, order.scale or (1.0,), training.frames.sizes),
-        training.frames,
-        budget=training.budget,
-        checkpoints=training.checkpoints,
+        sized(names, evaluation.scale or (1.0,), training.frames.sizes),
+        training,
         begin=display.stage,
-        report=training.report,
         failed=failures.append,
     )
     entries = list(trained)
-    length = f"{order.seconds:g} s" if order.steps is None else f"{order.steps} steps"
-    said = [
+    length = f"{evaluation.seconds:g} s" if evaluation.steps is None else f"{evaluation.steps} steps"
+    sentences = [
         f"Systems were trained for {length} each on {len(training.frames)} frames of the teacher at {settings.texels} "
-        f"texels, at sizes relative to preset {order.preset}, and at the largest that cost at most as much as ours.",
+        f"texels, at sizes relative to preset {evaluation.preset}, and at the largest that cost no more than ours.",
         "M parameters and MFLOP: of what turns a pose into a texture and a mesh; posing and drawing are left out.",
     ]
-    return entries, [*said, *(f"Failed: {sentence}" for sentence in failures)]
+    return entries, [*sentences, *(f"Failed: {sentence}" for sentence in failures)]
 
 
 def _record(teacher: Path, capture: Capture, frames: int, work: Path, display: Display) -> Recording:

@@ -87,7 +87,7 @@ def full_blendshapes(sizes: Sizes) -> Network:
 
 @torch.no_grad()
 def start_from_components(basis: Basis, frames: TrainingFrames, *, run: Run) -> None:
-    """Principal components of the weighted textures, coefficients of unit variance, and an MLP taught these.
+    """Principal components of the weighted textures, coefficients of unit variance, and an MLP trained on these.
 
     By the frames' Gram matrix, which needs one channel in memory at a time.
     """
@@ -115,7 +115,7 @@ def start_from_components(basis: Basis, frames: TrainingFrames, *, run: Run) -> 
         owners = frames.parts.texel_owners(frames.sizes.texels)
         fade, light = frames.sizes.settings.generalisation.fade, basis.channels.stop > APPEARANCE.start
         local = sample_locality(frames.parts, directions, owners, fade=fade, light=light)
-    basis.mlp = _teach(frames, rows, u * s, expand, locality=local, run=run)
+    basis.mlp = _train(frames, rows, u * s, expand, locality=local, run=run)
 
 
 class SingleLevel(FullNetwork):
@@ -166,7 +166,7 @@ def start_from_quarter(part: Separable, frames: TrainingFrames, *, run: Run) -> 
     """Alternating least squares on the low-pass quarter-size images, carried to full size.
 
     A recorded texture is the low-pass synthesis of its quarter-size image, which takes outer products to outer
-    products, so nothing is lost by the smaller problem. The MLP is taught as our student's are.
+    products, so nothing is lost by the smaller problem. The MLP is trained as our student's are.
     """
     settings, wavelet = frames.sizes.settings, frames.sizes.wavelet
     rows, quarter = sampled(frames), settings.texels >> STATIC_LEVELS
@@ -198,7 +198,7 @@ def start_from_quarter(part: Separable, frames: TrainingFrames, *, run: Run) -> 
         )
         fade, light = settings.generalisation.fade, part.channels == APPEARANCE
         local = texture_locality(parts, stand_in, targets, unit, fade=fade, light=light)
-    part.mlp = _teach(frames, rows, targets.coordinates, targets.expand, locality=local, run=run)
+    part.mlp = _train(frames, rows, targets.coordinates, targets.expand, locality=local, run=run)
 
 
 def finer(owners: Tensor, times: int) -> Tensor:
@@ -277,7 +277,7 @@ def sampled(frames: TrainingFrames) -> Tensor:
 
 
 @torch.enable_grad()
-def _teach(
+def _train(
     frames: TrainingFrames,
     rows: Tensor,
     coordinates: Tensor,  # [F, K] of the rows
@@ -286,7 +286,7 @@ def _teach(
     locality: Locality | None,
     run: Run,
 ) -> Conditioned:
-    """An MLP to coordinates @ expand, taught as our student's are."""
+    """An MLP to coordinates @ expand, trained as our student's are."""
     settings = frames.sizes.settings
     return regress(
         frames.motion.descriptors[rows].to(run.device),

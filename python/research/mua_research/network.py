@@ -1,9 +1,10 @@
 """What all compared networks share: weighted deviations from the training mean, counts, training.
 
 A network predicts deviations from the mean of the training frames in units in which every attribute counts alike
-(`mua.student.targets.channel_weights`); the mean texture is among its learnt numbers.
+(`mua.student.targets.channel_weights`); the mean texture is among its parameters.
 """
 
+import time
 from abc import abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -28,7 +29,7 @@ FRAMES_AT_ONCE = 16
 
 
 class Network(nn.Module):
-    """A texture model; buffers are what training data gives, parameters what is learnt."""
+    """A texture model; buffers are what training data gives, parameters what is trained."""
 
     mean_texture: Tensor
     weights: Tensor
@@ -64,7 +65,7 @@ class Network(nn.Module):
     def flops(self) -> int:
         """Of one frame, a multiply-add as two, without the coarse mesh."""
 
-    def learnt(self) -> int:
+    def parameter_count(self) -> int:
         """Parameters and the mean, without the coarse mesh."""
         return sum(parameter.numel() for parameter in self.parameters()) + self.mean_texture.numel()
 
@@ -77,13 +78,13 @@ class NetworkSystem:
         self._sizes, self._build = sizes, build
         self._network: Network | None = None
         self.steps = 0  # of Adam that the budget allowed
-        self.seconds = 0.0  # that training took, on the budget's clock
+        self.seconds = 0.0  # that training took
         with torch.device("meta"):
             network = build(sizes)
             coarse = Coarse(
                 sizes.vertices, sizes.settings.components, inputs=sizes.inputs, hidden=sizes.settings.hidden
             )
-        self.parameters = network.learnt() + coarse_parameters(coarse)
+        self.parameters = network.parameter_count() + coarse_parameters(coarse)
         self.flops = network.flops() + coarse_flops(coarse)
 
     @property
@@ -94,15 +95,15 @@ class NetworkSystem:
 
     def fit(self, frames: TrainingFrames, budget: Budget, generator: torch.Generator, report: Report) -> None:
         """Train a new network; the closed-form start, where the system has one, counts towards the seconds."""
-        started = budget.clock()
+        started = time.monotonic()
         network = self._build(self._sizes)
         network.attach(frames, frames.device)
 
-        def told(progress: Any) -> None:
+        def hear(progress: Any) -> None:
             report(replace(progress, stage=f"{self.name}: {progress.stage}"))
 
         size = figure_scale(frames.rig.mesh.vertices)
-        run = Run(generator, Forgetful(Path(), ""), told, frames.device, size=size)
+        run = Run(generator, Forgetful(Path(), ""), hear, frames.device, size=size)
         groups = network.start(frames, rate=budget.rate, run=run)
         self.steps = optimise(
             lambda rows: network.loss(frames, rows),
@@ -112,18 +113,18 @@ class NetworkSystem:
             started=started,
             stage="Adam",
             generator=generator,
-            report=told,
+            report=hear,
         )
         fold(network)
-        self._network, self.seconds = network.eval(), budget.clock() - started
+        self._network, self.seconds = network.eval(), time.monotonic() - started
 
     def state(self) -> dict[str, Any]:
-        """What was learnt, for a file."""
-        learnt = {name: tensor.cpu() for name, tensor in self.network.state_dict().items()}
-        return {"network": learnt, "steps": self.steps, "seconds": self.seconds}
+        """The trained parameters, for a file."""
+        trained = {name: tensor.cpu() for name, tensor in self.network.state_dict().items()}
+        return {"network": trained, "steps": self.steps, "seconds": self.seconds}
 
     def restore(self, state: dict[str, Any], frames: TrainingFrames) -> None:
-        """Take up what was learnt from the same frames before."""
+        """Take up what was trained on the same frames before."""
         network = self._build(self._sizes)
         network.attach(frames, frames.device)  # the convolutions' maps need the rig
         network.load_state_dict(state["network"])

@@ -22,7 +22,7 @@ def optimise(
     *,
     frames: int,
     budget: Budget,
-    started: float,  # on the budget's clock
+    started: float,  # by time.monotonic
     stage: str,
     generator: torch.Generator,
     report: Report,
@@ -57,7 +57,7 @@ def _spent(budget: Budget, step: int, started: float) -> float:
     """The share of the budget that is gone; whichever limit comes first counts."""
     shares = [0.0]
     if budget.seconds is not None:
-        shares.append((budget.clock() - started) / budget.seconds if budget.seconds > 0 else 1.0)
+        shares.append((time.monotonic() - started) / budget.seconds if budget.seconds > 0 else 1.0)
     if budget.steps is not None:
         shares.append(step / budget.steps if budget.steps > 0 else 1.0)
     return max(shares)

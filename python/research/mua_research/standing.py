@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from mua.evaluation.filmed import SPLITS, FilmedEntry, Judged, Standing, mean
-from mua.evaluation.order import OURS
+from mua.evaluation.settings import OURS
 
 
 def standings(judged: Sequence[Judged], entries: Sequence[FilmedEntry]) -> list[Standing]:
@@ -26,12 +26,12 @@ def best(judged: Sequence[Judged], names: Sequence[str], split: str) -> str | No
 
 def sentences(found: Sequence[Standing]) -> list[str]:
     """Of each split whether ours is first."""
-    said = []
+    shown = []
     for one in found:
         place = "is first" if one.difference > 0 else "is NOT first"
         how = f"{one.difference:+.2f} dB, nearer in {one.ahead} of {one.views} images"
-        said.append(f"{one.split}: among systems that cost at most as much, {OURS} {place}: {how}, than {one.rival}.")
-    return said
+        shown.append(f"{one.split}: among systems that cost at most as much, {OURS} {place}: {how}, than {one.rival}.")
+    return shown
 
 
 def _standing(judged: Sequence[Judged], own: str, rival: str, split: str) -> Standing:

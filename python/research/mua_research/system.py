@@ -4,7 +4,6 @@ All systems share the coarse mesh of our student, so that what they draw differs
 themselves are listed in `mua_research.systems`.
 """
 
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -18,6 +17,8 @@ from mua.student.components import Components
 from mua.student.local import Parts
 from mua.student.model import Coarse, Student, lowpass_texels
 from mua.student.settings import Ranks, Settings
+from mua.training.checkpoint import Checkpoints
+from mua.training.optimise import Report
 from mua.wavelets import Bands
 
 ALL = slice(0, CHANNELS)
@@ -48,11 +49,10 @@ class Sizes:
 class Budget:
     """How long each system may learn, everything included; a budget in steps gives the same bytes each time."""
 
-    seconds: float | None = None  # of the clock
+    seconds: float | None = None
     steps: int | None = None  # of Adam
     batch: int = 16  # frames per step
     rate: float = 1e-3  # of Adam, for what starts from noise; a closed-form start is descended from more slowly
-    clock: Callable[[], float] = time.monotonic  # or time.process_time, where others use the machine as well
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,6 +115,16 @@ class TrainingFrames:
     def textures(self, rows: Tensor) -> Tensor:
         """The recorded textures [F, N, 23] in raw channels."""
         return self.mean_texture + (self.deviations(rows) / self.weights[:, None]).transpose(1, 2)
+
+
+@dataclass(frozen=True, eq=False)
+class Training:
+    """What every system of a comparison is trained with."""
+
+    frames: TrainingFrames
+    budget: Budget
+    checkpoints: Checkpoints  # of this recording, these settings and this budget
+    report: Report
 
 
 def coarse_parameters(coarse: Coarse) -> int:

@@ -5,12 +5,10 @@ from functools import partial
 
 import torch
 
-from mua.training.checkpoint import Checkpoints
-from mua.training.optimise import Report
 from mua_research.bands import blendshapes_conv1d, conv_blendshapes, conv_conv, ours
 from mua_research.full import LinearMap, SingleLevel, full_blendshapes, pca_only
 from mua_research.network import Network, NetworkSystem
-from mua_research.system import Budget, Sizes, TrainingFrames
+from mua_research.system import Sizes, Training
 
 NETWORKS: dict[str, Callable[[Sizes], Network]] = {
     "pca-only": pca_only,
@@ -26,19 +24,13 @@ NETWORKS: dict[str, Callable[[Sizes], Network]] = {
 SYSTEMS = {name: partial(NetworkSystem, name, build=build) for name, build in NETWORKS.items()}
 
 
-def train_or_restore(
-    system: NetworkSystem,
-    frames: TrainingFrames,
-    *,
-    stage: str,  # under which it is kept
-    budget: Budget,
-    checkpoints: Checkpoints,  # of this recording, these settings and this budget
-    report: Report,
-) -> None:
-    """Train a system, or take up what an earlier run made of it."""
-    kept = checkpoints.load(stage)
+def train_or_restore(system: NetworkSystem, training: Training, name: str) -> None:
+    """Train a system, or take up what an earlier run made of it, under its name."""
+    stage, frames = f"system {name}", training.frames
+    kept = training.checkpoints.load(stage)
     if kept is not None:
         system.restore(kept, frames)
         return
-    system.fit(frames, budget, torch.Generator().manual_seed(frames.sizes.settings.seed), report)
-    checkpoints.save(stage, system.state())
+    generator = torch.Generator().manual_seed(frames.sizes.settings.seed)
+    system.fit(frames, training.budget, generator, training.report)
+    training.checkpoints.save(stage, system.state())

@@ -1,33 +1,24 @@
-"""What the training of all systems of an order begins with: their frames, their budget, where results are kept."""
+"""What the training of all systems of a comparison begins with: their frames, their budget, where results are kept."""
 
-from dataclasses import dataclass
 from pathlib import Path
 
 import torch
 
 from mua.cli.display import Display
-from mua.evaluation.order import EvaluationOrder
+from mua.evaluation.settings import EvaluationSettings
 from mua.recording import Recording
 from mua.student.settings import Settings
 from mua.training.checkpoint import Checkpoints, run_key
-from mua.training.optimise import Progress, Report, Run
+from mua.training.optimise import Progress, Run
 from mua_research.motion import training_frames
-from mua_research.system import Budget, TrainingFrames
+from mua_research.system import Budget, Training
 
 
-@dataclass(frozen=True, eq=False)
-class Training:
-    """What every system of an order is trained with."""
-
-    frames: TrainingFrames
-    budget: Budget
-    checkpoints: Checkpoints
-    report: Report
-
-
-def prepare(order: EvaluationOrder, recording: Recording, settings: Settings, work: Path, display: Display) -> Training:
+def prepare(
+    evaluation: EvaluationSettings, recording: Recording, settings: Settings, work: Path, display: Display
+) -> Training:
     """Train the coarse mesh that all systems share, or take it from the work directory."""
-    budget = Budget(seconds=order.seconds) if order.steps is None else Budget(steps=order.steps)
+    budget = Budget(seconds=evaluation.seconds) if evaluation.steps is None else Budget(steps=evaluation.steps)
     checkpoints = Checkpoints(work, run_key((settings, recording.fingerprint(), budget.seconds, budget.steps), []))
     device = torch.device("cuda" if torch.cuda.is_available() else "cpu")
     generator = torch.Generator().manual_seed(settings.seed)

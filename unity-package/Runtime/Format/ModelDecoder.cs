@@ -3,7 +3,7 @@ using System.Runtime.InteropServices;
 
 namespace Mua.Format
 {
-    /// <summary>Wavelet, coarse mesh and branches of a parsed tree, checked as in python/mua/asset/read.py.</summary>
+    /// <summary>Wavelet, coarse mesh and branches of a parsed tree, checked as in python/mua/asset/read_model.py.</summary>
     internal sealed class ModelDecoder
     {
         private const long Any = Tensors.Any;

@@ -2,7 +2,7 @@ using System;
 
 namespace Mua.Format
 {
-    /// <summary>Skeleton, template, texels and surface of a parsed tree, checked as in python/mua/asset/read.py.</summary>
+    /// <summary>Skeleton, template, texels and surface of a parsed tree, checked as in python/mua/asset/read_rig.py.</summary>
     internal sealed class RigDecoder
     {
         private const int DualNumbers = 8; // of a dual quaternion

@@ -4,7 +4,7 @@ using System.Runtime.InteropServices;
 namespace Mua.Format
 {
     /// <summary>
-    /// Refuses what a file claims by numbers alone before any tensor is opened: how many of each part, how large a texture.
+    /// Counts of parts and the size of the texture, which a few bytes could claim: checked before any tensor is opened.
     /// Mirrors python/mua/asset/sizes.py.
     /// </summary>
     internal static class Sizes

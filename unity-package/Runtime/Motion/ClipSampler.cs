@@ -48,7 +48,7 @@ namespace Mua.Motion
 
         /// <summary>
         /// The window of `frames` frames that ends at `index`, newest first: local rotations [frames, J, 4] and
-        /// translations [frames, J, 3], metres. Before its first frame, a clip is held still.
+        /// translations [frames, J, 3], metres. Before its first frame, a clip stands still.
         /// </summary>
         public void ReadWindow(int index, int frames, Span<double> rotations, Span<double> translations)
         {

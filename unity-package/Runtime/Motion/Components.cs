@@ -4,7 +4,8 @@ using Mua.Format;
 namespace Mua.Motion
 {
     /// <summary>
-    /// Principal components of a normalised descriptor, held within what training showed: as python/mua/pose/components.py.
+    /// Principal components of the motion descriptor, limited to the range of training: the input of the networks
+    /// (python/mua/pose/components.py).
     /// </summary>
     internal sealed class Components
     {

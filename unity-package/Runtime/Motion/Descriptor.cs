@@ -4,7 +4,7 @@ using Mua.Format;
 namespace Mua.Motion
 {
     /// <summary>
-    /// The motion descriptor of a window of poses, and its components, which the networks read; the same numbers as
+    /// The motion descriptor: the MLPs' view of a window of poses, and its components; the same numbers as
     /// python/mua/pose/descriptor.py and components.py.
     /// </summary>
     public sealed class Descriptor

@@ -7,7 +7,7 @@ using UnityEngine.Rendering;
 
 namespace Mua.SelfTest
 {
-    /// <summary>One golden case on the device: its buffers, its dispatch, and what came of it.</summary>
+    /// <summary>One golden case on the device: its buffers, its dispatch, and its result.</summary>
     internal sealed class CaseRun
     {
         private readonly GoldenFile file;

@@ -13,7 +13,7 @@ namespace Mua.SelfTest
         public float[] gpu = new float[0];
     }
 
-    /// <summary>What bench.json holds; names of fields are those of the file, times are milliseconds.</summary>
+    /// <summary>The content of bench.json; names of fields are those of the file, times are milliseconds.</summary>
     [Serializable]
     internal sealed class BenchReport
     {

@@ -33,7 +33,7 @@ namespace Mua.SelfTest
         }
     }
 
-    /// <summary>What a buffer holds before the dispatch; names of fields are those of the file.</summary>
+    /// <summary>The content of a buffer before the dispatch; names of fields are those of the file.</summary>
     [Serializable]
     internal sealed class GoldenBuffer
     {
@@ -65,7 +65,9 @@ namespace Mua.SelfTest
         }
     }
 
-    /// <summary>What stands in some words of a buffer afterwards; names of fields are those of the file.</summary>
+    /// <summary>
+    /// The expected content of some words of a buffer after the dispatch; names of fields are those of the file.
+    /// </summary>
     [Serializable]
     internal sealed class GoldenExpected
     {
@@ -118,7 +120,7 @@ namespace Mua.SelfTest
         }
     }
 
-    /// <summary>One dispatch and what it must leave behind; names of fields are those of the file.</summary>
+    /// <summary>One dispatch and its expected results; names of fields are those of the file.</summary>
     [Serializable]
     internal sealed class GoldenCase
     {
@@ -161,7 +163,9 @@ namespace Mua.SelfTest
             return Array.FindIndex(buffers, found => found.name == buffer);
         }
 
-        /// <summary>InvalidDataException unless the case can run and all it speaks of lies in `size` bytes.</summary>
+        /// <summary>
+        /// Throws InvalidDataException unless the case can run and everything that it names lies within `size` bytes.
+        /// </summary>
         public void Check(int size)
         {
             Require(entry.Length > 0 && char.IsLetter(entry[0]), "entry");

@@ -28,7 +28,7 @@ namespace Mua.SelfTest
         /// <summary>Stem of the kernel's file.</summary>
         public string Stem => stem;
 
-        /// <summary>What STEM.json and STEM.bin hold; InvalidDataException says what is wrong with them.</summary>
+        /// <summary>The content of STEM.json and STEM.bin; InvalidDataException says what is wrong with them.</summary>
         public static GoldenFile Parse(string stem, byte[] text, byte[] binary)
         {
             GoldenFile file;

@@ -74,7 +74,7 @@ namespace Mua.SelfTest
         /// <summary>How long to measure, as written; null where it is left out.</summary>
         public string Seconds => After("-muaSeconds");
 
-        /// <summary>What answers carry.</summary>
+        /// <summary>The name of the run, which every answer repeats.</summary>
         public string Run => After("-muaRun") ?? DefaultRun;
 
         private string After(string word)

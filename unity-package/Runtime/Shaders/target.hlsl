@@ -5,7 +5,7 @@
 // which Unity drives like them) Unity draws render textures upside down, so that their rows agree with OpenGL's, and
 // negates the second row of its projections for that. The back buffer is not turned, nor are a headset's textures where
 // the pipeline draws straight into them. Only the engine knows which of these is bound, and the projection by which it
-// draws everything else tells: nothing else in the package decides it. (_ProjectionParams.x should say the same, but URP
+// draws everything else shows it: nothing else in the package decides it. (_ProjectionParams.x should agree, but URP
 // 17.0 sets it apart from the matrix, as of the back buffer also where a camera draws straight into a texture.)
 //
 // Depth comes by the matrices as GL.GetGPUProjectionMatrix leaves it: 0..w, reversed or not, and -w..w on OpenGL.

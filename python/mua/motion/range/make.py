@@ -38,7 +38,7 @@ def motion_range(character: Character, clips: Sequence[Clip], *, frames: int, se
     rng = np.random.default_rng(seed)
     skeleton, rest = character.skeleton, _rest(character.skeleton, clips)
     moving = np.flatnonzero(moving_joints(character))
-    matches = match_joints(BODY, skeleton, source_said=ROLES, target_said=character.roles)
+    matches = match_joints(BODY, skeleton, source_stated=ROLES, target_stated=character.roles)
     made: list[Clip] = []
     for number in range(max(-(-frames // ROUND), 1)):
         own = np.random.default_rng(rng.integers(2**63))

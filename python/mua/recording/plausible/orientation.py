@@ -21,7 +21,7 @@ ROTATION, SCALE = ATTRIBUTES["rotation"], ATTRIBUTES["scale"]
 
 
 class Orientations:
-    """How the flat splats of one rig lie; nothing is said of round ones, nor where no known mistake explains it."""
+    """How the flat splats of one rig lie; no finding for round ones, nor where no known mistake explains it."""
 
     def __init__(self, rig: Rig) -> None:
         self._rig = rig

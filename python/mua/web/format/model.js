@@ -1,5 +1,5 @@
 // Wavelet, networks and subbands of a file, checked; what the device reads stays as it is stored.
-// Reference: python/mua/asset/read.py.
+// Reference: python/mua/asset/read_model.py.
 
 import { LARGEST_TAP, MAX_TAPS } from "./limits.js";
 import { general } from "./numbers.js";

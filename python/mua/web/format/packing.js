@@ -64,7 +64,7 @@ async function inflate(
   /** @type {string} */ path,
 ) {
   const count = found.length;
-  if (!count) return; // not every language tells a damaged stream of nothing from a whole one
+  if (!count) return; // not every language notices that an empty stream is damaged
   const reader = new Blob([stream]).stream().pipeThrough(new DecompressionStream("deflate-raw")).getReader();
   let [got, whole] = [0, true];
   try {

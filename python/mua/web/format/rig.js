@@ -1,4 +1,4 @@
-// Skeleton, template, texels and surface of a file, checked. Reference: python/mua/asset/read.py.
+// Skeleton, template, texels and surface of a file, checked. Reference: python/mua/asset/read_rig.py.
 
 import { centreBarycentrics } from "../prepare.js";
 import { normalized } from "../rotation.js";

@@ -17,7 +17,7 @@ export class Stages {
     this.sought = 0; // bytes that were there when the tables were sought last
   }
 
-  /** The end of the newest stage that the first `got` bytes hold and that was not told before; 0 where there is none. */
+  /** The end of the newest stage that the first `got` bytes hold and that was not reported before; 0 where there is none. */
   reached(/** @type {number} */ got) {
     if (!this.ends && this.sought < HEAD) {
       this.ends = endsOf(this.content, got);
@@ -38,7 +38,7 @@ function endsOf(/** @type {ArrayBuffer} */ content, /** @type {number} */ got) {
     if (!ends || ends.length !== STAGES || ends.byteOffset + ends.byteLength > got) return null;
     return Array.from(ends.subarray(0, STAGES - 1));
   } catch {
-    return null; // what is wrong is said of the whole file
+    return null; // reading the whole file says what is wrong
   }
 }
 
