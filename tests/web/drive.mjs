@@ -49,12 +49,6 @@ const operations = {
     await page.mouse.move(...to, { steps: 4 });
     await page.mouse.up({ button });
   },
-  async pinch({ page, from, to }) {
-    const touches = [];
-    for (const [x, y] of from) touches.push(await page.touchscreen.touchStart(x, y));
-    for (const [i, [x, y]] of to.entries()) await touches[i].move(x, y);
-    for (const touch of touches) await touch.end();
-  },
   async swipe({ page, from, to }) {
     const touch = await page.touchscreen.touchStart(...from);
     for (let step = 1; step <= 8; step++) {

@@ -11,6 +11,7 @@
     ended = false;
 
     async requestReferenceSpace(kind) {
+      if (headset.floorless) throw new DOMException("There is no floor", "NotSupportedError");
       return { kind };
     }
 
@@ -80,7 +81,7 @@
 
     getViewSubImage(layer, { eye }) {
       if (headset.session.state.layers[0] !== layer) throw new TypeError("Not a layer of this session");
-      const image = { colorTexture: layer.texture, viewport: VIEWPORT, eye };
+      const image = { colorTexture: layer.texture, viewport: { ...VIEWPORT, ...headset.viewport }, eye };
       image.getViewDescriptor = function () {
         return { dimension: "2d", mipLevelCount: 1, arrayLayerCount: 1, baseArrayLayer: this.eye };
       };

@@ -192,6 +192,24 @@ def test_the_sessions_frames_move_the_time_and_leave_the_canvas(opened: Open, sm
     assert page.evaluate("[player.time, drawn]") == [pytest.approx(before + 0.05), drawn]
 
 
+def test_images_of_another_size_are_filled_and_those_of_the_same_size_use_the_same_memory(
+    opened: Open, small: Path
+) -> None:
+    page = opened(before=FAKE, a=small.read_bytes())
+    enter(page, small)
+    kept = "player.room.headset.memory.textures.map(({ width, height }) => [width, height])"
+    for size, expected in (
+        ({}, [240, 160]),
+        ({}, [240, 160]),
+        ({"width": 90}, [180, 160]),
+        ({"height": 80}, [240, 80]),
+    ):
+        page.evaluate(f"(headset.viewport = {json.dumps(size)}, headset.show(1000, {given(EYES)}))")
+        assert page.evaluate(kept) == [expected]
+    seen = image(page, 1)[6:86, 4:124]
+    assert np.abs(seen[..., :3] - BACKDROP).max() > 8 / 255, "the figure is in the smaller picture"
+
+
 def test_a_head_that_nobody_finds_leaves_the_last_picture(opened: Open, small: Path) -> None:
     page = opened(before=FAKE, a=small.read_bytes())
     enter(page, small)
@@ -225,8 +243,9 @@ def test_the_page_has_its_picture_again_when_the_session_ends(opened: Open, smal
     [
         ("headset.refused = 'denied by the reader'", "denied by the reader"),
         ("headset.adapters.push(false)", "The device does not fit the headset"),
+        ("headset.floorless = true", "There is no floor"),
     ],
-    ids=["refused", "unfit device"],
+    ids=["refused", "unfit device", "no floor"],
 )
 def test_a_session_that_is_refused_is_a_sentence(opened: Open, small: Path, before: str, said: str) -> None:
     page = opened(before=FAKE, a=small.read_bytes())

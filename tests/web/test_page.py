@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from web.browser import PHONE, Browser, Page, Serve
+from web.browser import Browser, Page, Serve
 from web.pages import ELEMENT, SENTENCE, SHADOW, avatar, fake_site
 
 LOADED = "globalThis.fake?.drawn > 0 && fake.avatars.length > 0"
@@ -66,25 +66,6 @@ def test_the_camera_orbits_where_that_is_asked_for(opened: Open) -> None:
     opened({"src": "hero.muaavatar", "orbit": "90"}).wait("fake.camera.azimuth > 0.01")
 
 
-def test_attributes_say_what_is_shown_and_from_where(opened: Open) -> None:
-    given = {"clip": "wave", "speed": "0.5", "show": "template,skeleton", "azimuth": "90", "elevation": "-30"}
-    page = opened({"src": "hero.muaavatar", **given})
-    assert page.evaluate("[fake.clip, fake.speed]") == ["wave", 0.5]
-    assert page.evaluate("Object.keys(fake.show).filter((name) => fake.show[name])") == ["template", "skeleton"]
-    assert page.evaluate("[fake.camera.azimuth, fake.camera.elevation]") == pytest.approx([1.5708, -0.5236], abs=1e-4)
-
-
-def test_attributes_say_how_finely_avatars_are_shown_and_whether_the_camera_follows(opened: Open) -> None:
-    page = opened({"src": "hero.muaavatar", "level": "384", "budget": "200000", "follow": "", "stereo": ""})
-    assert page.evaluate("[fake.level, fake.budget, fake.follow, fake.stereo]") == [384, 200000, True, True]
-    page.evaluate(f"{ELEMENT}.setAttribute('level', 'full'), {ELEMENT}.removeAttribute('budget')")
-    assert page.evaluate("[fake.level, fake.budget]") == ["full", None]
-    page.evaluate(f"{ELEMENT}.setAttribute('level', 'none')")
-    assert page.evaluate("fake.level") == "full", "what is no level is said, and changes nothing"
-    page.evaluate(f"{ELEMENT}.removeAttribute('level')")
-    assert page.evaluate("fake.level") == "auto"
-
-
 def test_the_panel_sets_the_level_of_detail_and_following(opened: Open) -> None:
     page = opened()
     level = part(".level")
@@ -114,8 +95,11 @@ def test_keys_do_what_they_do_on_the_desktop(opened: Open) -> None:
     assert page.evaluate("[fake.show.skeleton, fake.show.shadow]") == [True, False]
     page.press("f", "l", "l", "l")
     assert page.evaluate("[fake.follow, fake.level]") == [False, 192]
-    page.press("s")
-    assert page.evaluate("fake.stereo") is True
+    page.press("l", "s", "c")
+    assert page.evaluate("[fake.level, fake.stereo, fake.clip]") == ["auto", True, "walk"]
+    page.press("1", "2", "3", "+", "+", "-")
+    assert page.evaluate("['splats', 'geometry', 'template'].map((name) => fake.show[name])") == [False, True, True]
+    assert page.evaluate("fake.camera.distance") == pytest.approx(4 / 1.15)
 
 
 def test_every_key_of_the_desktop_is_here() -> None:
@@ -137,6 +121,28 @@ def test_a_control_that_has_the_focus_keeps_its_keys(opened: Open) -> None:
     page.evaluate(f"{part('[name=skeleton]')}.focus()")
     page.press(" ")
     assert page.evaluate("[fake.playing, fake.show.skeleton]") == [True, True]
+    page.evaluate(f"{part('.scrub')}.focus()")
+    page.press("ArrowRight")
+    assert page.evaluate("fake.time") != pytest.approx(1 / 30), "the slider's own step"
+    page.press("c")
+    assert page.evaluate("fake.clip") == "wave"
+
+
+def test_the_controls_do_what_they_say_and_show_what_plays(opened: Open) -> None:
+    page = opened({"src": "hero.muaavatar"}, files={"other": avatar("other")})
+    page.evaluate(f"{part('.play')}.click()")
+    assert page.evaluate(f"[fake.playing, {part('.play')}.ariaLabel]") == [False, "Play"]
+    for name, value in (("clips", "wave"), ("speed", "0.5")):
+        page.evaluate(f"(({part(f'.{name}')}.value = '{value}'), 0)")
+        page.evaluate(f"{part(f'.{name}')}.dispatchEvent(new Event('change'))")
+    assert page.evaluate("[fake.clip, fake.speed]") == ["wave", 0.5]
+    page.evaluate("(fake.camera.azimuth = 1, 0)")
+    page.evaluate(f"{part('.reset')}.click()")
+    assert page.evaluate("fake.camera.azimuth") == 0
+    page.evaluate(f"Object.assign({ELEMENT}, {{ speed: 2, clip: 'walk' }}, 0)")
+    assert page.evaluate(f"[{part('.speed')}.value, {part('.clips')}.value]") == ["2", "walk"]
+    page.evaluate(f"{ELEMENT}.add('other.muaavatar')")
+    page.wait(f"{part('canvas')}.ariaLabel === 'hero, other'")
 
 
 def test_shift_and_arrows_turn(opened: Open) -> None:
@@ -160,14 +166,6 @@ def test_the_mouse_turns_moves_and_zooms(opened: Open) -> None:
     assert page.evaluate("fake.camera.distance") == pytest.approx(4 / 1.15)
     page.press("r")
     assert page.evaluate("[fake.camera.azimuth, fake.camera.distance]") == [0, 4]
-
-
-def test_two_fingers_zoom(opened: Open) -> None:
-    page = opened(size=PHONE, touch=True)
-    x, y = middle(page)
-    page.do("pinch", **{"from": [[x - 20, y], [x + 20, y]], "to": [[x - 60, y], [x + 60, y]]})
-    assert page.evaluate("fake.camera.distance") == pytest.approx(4 / 3)
-    assert page.evaluate("fake.camera.azimuth") == 0
 
 
 def test_a_paused_avatar_is_drawn_only_when_something_changes(opened: Open) -> None:
@@ -280,19 +278,6 @@ def test_a_device_that_is_lost_is_told_and_loads_again(opened: Open) -> None:
     page.evaluate(f"{part('.again')}.click()")
     page.wait("fakes === 2 && fake.drawn > 0")
     assert page.evaluate("[old.disposed, fake.avatars.length]") == [True, 1]
-
-
-def test_an_element_that_leaves_the_page_gives_its_memory_back(opened: Open) -> None:
-    page = opened()
-    page.evaluate(f"{ELEMENT}.remove()")
-    page.wait("fake.disposed")
-
-
-def test_another_src_takes_the_place_of_the_first(opened: Open) -> None:
-    page = opened(files={"other": avatar("other")})
-    page.evaluate(f"{ELEMENT}.setAttribute('src', 'other.muaavatar')")
-    page.wait("fake.avatars[0]?.name === 'other'")
-    assert page.evaluate("fake.avatars.length") == 1
 
 
 def test_a_picture_is_saved_under_the_avatars_name(opened: Open) -> None:

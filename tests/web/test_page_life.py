@@ -1,7 +1,7 @@
 """An element in the life of a page: moved, away and back, beside others, out of sight, and asked for more."""
 
 import pytest
-from web.pages import ELEMENT, SENTENCE, avatar
+from web.pages import ELEMENT, avatar
 from web.test_page import LOADED, SETTLED, Open, opened, part
 
 __all__ = ["opened"]  # a fixture
@@ -90,20 +90,6 @@ def test_a_paused_element_of_another_size_is_drawn_again(opened: Open) -> None:
     page.wait(f"fake.drawn > {drawn}")
 
 
-def test_attributes_count_also_while_an_avatar_loads(opened: Open) -> None:
-    page = opened({"src": "hero.muaavatar"}, until=f"{SENTENCE} === 'Loading half of it'", before=HOLD)
-    asked = {"clip": "wave", "speed": "2", "level": "384", "show": "template"}
-    for name, value in asked.items():
-        page.evaluate(f"{ELEMENT}.setAttribute('{name}', '{value}')")
-    page.evaluate("go()")
-    page.wait(LOADED)
-    page.evaluate(SETTLED)
-    assert page.evaluate("[fake.clip, fake.speed, fake.level, fake.show.template, fake.show.splats]") == [
-        *("wave", 2, 384),
-        *(True, False),
-    ]
-
-
 def test_attributes_count_after_it_is_loaded_and_leave_the_others(opened: Open) -> None:
     page = opened({"src": "hero.muaavatar", "speed": "0.5"})
     page.evaluate(f"{ELEMENT}.setAttribute('clip', 'wave')")
@@ -142,11 +128,5 @@ def test_frames_go_round_at_both_ends_of_a_clip(opened: Open) -> None:
     assert page.evaluate("[fake.clip, fake.time]") == ["wave", 0]
     page.evaluate(f"({ELEMENT}.seek(1), {ELEMENT}.nextClip())")
     assert page.evaluate("[fake.clip, fake.time]") == ["walk", 0]
-
-
-def test_an_avatar_that_is_taken_away_lets_the_others_stand_in_the_middle_and_is_out_of_the_panel(opened: Open) -> None:
-    files = {"other": avatar("other")}
-    page = opened({"src": "hero.muaavatar other.muaavatar"}, files=files, until="globalThis.fake?.avatars.length === 2")
-    page.evaluate(f"{ELEMENT}.dismiss({ELEMENT}.avatars[0])")
-    assert page.evaluate("fake.avatars.map(({name, place}) => [name, place[0]])") == [["other", 0]]
-    assert page.evaluate(f"{part('.avatars')}.querySelectorAll('button').length") == 1
+    page.evaluate(f"({ELEMENT}.seek(1), ({ELEMENT}.clip = 'walk'))")
+    assert page.evaluate("fake.time") == 0, "the clip that plays begins anew where it is chosen again"

@@ -89,6 +89,10 @@ for (const [mark, first, then] of [
     assert.deepEqual(await fetched([200, 0, 40], [206, 40, 100]), CONTENT);
   });
 
+test("a file that has become shorter than what is there has changed", async () => {
+  await assert.rejects(fetched([200, 0, 40], [416]), /has changed on the server/);
+});
+
 test("a server that sends another part than was asked for is a sentence", async () => {
   headers = [{}, { "content-range": "bytes 30-99/100" }];
   await assert.rejects(fetched([200, 0, 40], [206, 40, 100]), /sends another part of it than was asked for/);

@@ -119,19 +119,6 @@ test("an avatar whose device is lost while it comes is a sentence and is not sho
   assert.deepEqual(engine.avatars, []);
 });
 
-test("a device that comes back draws all avatars by slots of its own", async () => {
-  const { engine, reported } = await begun();
-  for (let i = 0; i < 2; i++) await engine.put(avatar, null, true);
-  await engine.recover(LONG);
-  assert.equal(devices.length, 2);
-  assert.deepEqual(
-    engine.entries.map(({ slot }) => slot),
-    devices[1].slots,
-  );
-  assert.deepEqual(devices[1].drawn, [devices[1].slots]);
-  assert.deepEqual([engine.renderer, reported], [devices[1], []]);
-});
-
 test("an avatar that is taken away while its device comes back holds nothing there", async () => {
   const { engine, reported } = await begun();
   const [first, second] = [await engine.put(avatar, null, true), await engine.put(avatar, null, true)];
@@ -186,15 +173,6 @@ test("a device that is lost again while it takes up the avatars is reported and 
   uploading = async () => (devices[1].lose({ reason: "unknown" }), settled());
   await engine.recover(LONG);
   assert.deepEqual([devices.length, devices[1].destroyed, devices[1].drawn, engine.renderer], [2, true, [], null]);
-  assert.match(reported.join(), /lost twice/);
-});
-
-test("a device that is lost for a while comes back, and is reported where it is lost again at once", async () => {
-  const { engine, reported } = await begun();
-  await engine.recover(LONG);
-  devices[1].lose({ reason: "unknown" });
-  await settled();
-  assert.equal(devices.length, 2);
   assert.match(reported.join(), /lost twice/);
 });
 

@@ -28,19 +28,6 @@ test("a negative speed plays backward, from the first frame to the last", () => 
   assert.equal(playback.frameOf(WALK), 54);
 });
 
-test("an avatar that is paused at its last frame stays there, and goes on with the first", () => {
-  const playback = playing(WALK);
-  playback.time = 59 / RATE;
-  playback.playing = false;
-  playback.advance(20);
-  assert.deepEqual([playback.frameOf(WALK), playback.followingOf(WALK)], [59, 59]);
-  playback.playing = true;
-  playback.advance(40);
-  assert.deepEqual([playback.frameOf(WALK), playback.followingOf(WALK)], [59, 0]);
-  playback.advance(60);
-  assert.equal(playback.frameOf(WALK), 0);
-});
-
 test("each avatar plays its own clip of the name that was chosen, or its first", () => {
   const playback = playing(WALK, OTHER);
   playback.time = 40 / RATE;

@@ -87,6 +87,13 @@ test("a download that fails takes away what was shown of it, also where a part i
   const early = arriving();
   await early.progressive.fail();
   assert.deepEqual(early.noted, []);
+  let ready;
+  const waiting = arriving({ projecting: new Promise((done) => (ready = done)) });
+  waiting.progressive.show("mesh");
+  const failing = waiting.progressive.fail();
+  ready();
+  await failing;
+  assert.deepEqual(waiting.noted, []);
 });
 
 test("a part that was removed meanwhile is not reported", async () => {

@@ -42,45 +42,6 @@ function drawn(show, { cameras = CAMERAS.slice(0, 1), bare = [false], seen = bar
   return done.filter((each) => !each.startsWith("cut") && each !== "end");
 }
 
-test("shadow, geometry or template, splats and skeleton follow each other", () => {
-  const all = drawn({ splats: true, geometry: true, template: true, skeleton: true, shadow: true });
-  const parts = [
-    "geometry 0 from 0 for 0",
-    "template 0 for 0",
-    "ground 0 for 0",
-    "splats of eye 0 with the colours of 0",
-    "drawn",
-    "skeleton 0 for 0",
-  ];
-  assert.deepEqual(all, ["mask 0", "view 0,0,40,30", ...parts]);
-});
-
-test("only what is asked for is drawn", () => {
-  for (const [name, wanted] of Object.entries({
-    splats: ["splats of eye 0 with the colours of 0", "drawn"],
-    geometry: ["geometry 0 from 0 for 0"],
-    template: ["template 0 for 0"],
-    skeleton: ["skeleton 0 for 0"],
-  }))
-    assert.deepEqual(drawn({ [name]: true }).slice(1), wanted);
-  assert.deepEqual(drawn({ shadow: true }), ["mask 0", "view 0,0,40,30", "ground 0 for 0"]);
-});
-
-test("each eye has its part of the picture, its camera and its colours", () => {
-  const all = drawn({ splats: true, template: true }, { cameras: CAMERAS });
-  assert.deepEqual(
-    all.filter((each) => each !== "drawn"),
-    [
-      "view 0,0,40,30",
-      "template 0 for 0",
-      "splats of eye 0 with the colours of 0",
-      "view 40,0,40,30",
-      "template 0 for 1",
-      "splats of eye 1 with the colours of 1",
-    ],
-  );
-});
-
 test("an avatar that has no splats yet is shown by its template in their place", () => {
   assert.deepEqual(
     drawn({ splats: true }, { bare: [true, false] }).filter((each) => each.startsWith("template")),

@@ -80,30 +80,6 @@ for (const places of [
     near(up, [0, 1, -BEFORE - reach]);
   });
 
-test("they are seen from the side from which the page shows them", () => {
-  const engine = engineOf([0, 0, 0]);
-  const [middle, reach] = foot(engine);
-  const room = new VR(engine).standing()();
-  const towards = [Math.sin(0.7), 0, Math.cos(0.7)]; // where the page's camera stands
-  near(
-    moved(
-      room,
-      middle.map((at, axis) => at + towards[axis]),
-    ),
-    [0, 0, 1 - BEFORE - reach],
-  );
-});
-
-test("a figure that is followed stays before the reader", () => {
-  const engine = engineOf([0, 0, 0]);
-  engine.way = [2, 0, 1];
-  const [middle, reach] = foot(engine);
-  const room = new VR(engine).standing();
-  near(moved(room(), middle), [0, 0, -BEFORE - reach]);
-  engine.way = [2.5, 0, 3];
-  near(moved(room(), [middle[0] + 0.5, middle[1], middle[2] + 2]), [0, 0, -BEFORE - reach]);
-});
-
 test("entering and leaving is noted, and the canvas gets its picture back", async () => {
   const engine = engineOf([0, 0, 0]);
   const vr = new VR(engine);
