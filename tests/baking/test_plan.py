@@ -52,6 +52,11 @@ def test_frames_lie_in_the_middle_of_equal_shares_of_all_clips() -> None:
     assert [one.whole == one.wanted for one in planned] == [True, True]
 
 
+def test_every_frame_is_taken_where_more_are_asked_for() -> None:
+    (planned,) = plan([clip("walk", 7)], [], frames=1000)
+    assert planned.wanted == frozenset(range(7))
+
+
 def test_of_many_frames_some_are_kept_whole() -> None:
     (planned,) = plan([clip("walk", 1000)], [], frames=600)
     assert planned.whole is not None

@@ -67,6 +67,7 @@ OTHERS: dict[str, PlannedClip] = {
     "rotations": replace(PLANNED, clip=replace(CLIP, rotations=-CLIP.rotations)),
     "translations": replace(PLANNED, clip=replace(CLIP, translations=CLIP.translations + 1)),
     "run-up": replace(PLANNED, run_up=CLIP),
+    "another run-up": replace(PLANNED, run_up=replace(CLIP, translations=CLIP.translations + 1)),
     "stretches": replace(PLANNED, clip=replace(CLIP, stretches=Stretches(np.arange(3), np.ones((len(CLIP), 3, 3, 3))))),
     "other stretches": replace(
         PLANNED, clip=replace(CLIP, stretches=Stretches(np.arange(3), np.zeros((len(CLIP), 3, 3, 3))))

@@ -144,17 +144,3 @@ def test_no_figure_of_the_table_is_cut(width: int) -> None:
     for figure in ("99.0 %", "96.0 %", "91.0 %"):
         assert figure in shown
     assert "[end]" in shown.replace("\n", "") or width == 80
-
-
-def test_an_end_that_follows_another_stages_line_is_named() -> None:
-    file = io.StringIO()
-    with Display(Console(file=file)) as shown:
-        shown.stage("geometry")
-        shown.step(0, 2)
-        shown.stage("appearance")
-        shown.step(2, 2)
-        shown.stage("geometry")
-        shown.step(2, 2)
-        shown.stage("avatar")
-    said = [line.strip().split(" ")[0] for line in file.getvalue().splitlines()]
-    assert said == ["geometry", "appearance", "appearance:", "geometry:", "avatar", "0.0"]

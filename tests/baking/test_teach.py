@@ -103,14 +103,6 @@ def test_tracks_that_are_not_there_are_a_sentence(capture: Path, tmp_path: Path,
     assert "no tracked point lies on the posed" in teach(tmp_path, "-o", tmp_path / "teacher", *OPTIONS).sentence
 
 
-def test_the_same_command_trains_nothing_again(capture: Path, made: Path, teach: Teach) -> None:
-    before = (made / "weights.pt").read_bytes()
-    ended = teach(capture, "-o", made, *OPTIONS)
-    assert ended.status == 0
-    assert "texels" not in ended.out.split("capture", 1)[1].splitlines()[1:2]
-    assert (made / "weights.pt").read_bytes() == before
-
-
 def test_a_teacher_has_frames_of_any_motion(capture: Path, made: Path) -> None:
     teacher = TrainedTeacher(made)
     clip = open_capture(capture).motion("reach")
