@@ -3,12 +3,13 @@
 About a minute on two cores: the one test of the default run that trains a student worth looking at.
 """
 
-import sys
 from functools import reduce
 from operator import add
 from pathlib import Path
 
 import numpy as np
+from frame_bounds import POSITION_BOUND
+from frame_errors import PosedFrame
 from silent import Silent
 
 from mua import rotation
@@ -27,11 +28,6 @@ from mua.player.splats import SplatFrame
 from mua.pose.clip import Clip
 from mua.recording import Recording
 from mua.student.settings import preset
-
-sys.path.append(str(Path(__file__).parents[1] / "parity"))
-
-from frame_bounds import POSITION_BOUND
-from frame_errors import PosedFrame
 
 # Shares of the variance about the mean texture: 3 points below what was found on training frames, 8 on unseen motion.
 LEAST = {

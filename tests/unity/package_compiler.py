@@ -6,11 +6,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from csharp import ROOT, CSharp
+from csharp import ROOT, STAND_INS, CSharp
 
 PACKAGE = ROOT / "unity-package"
-
-STAND_INS = Path(__file__).parent / "stand_ins"
 
 ENGINES = {  # an engine has the symbols of all before it; stand-ins say in these what came, and what was deprecated
     "6000.0": ("UNITY_2022_3_OR_NEWER", "UNITY_6000_0_OR_NEWER"),

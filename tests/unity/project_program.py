@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from csharp import PROGRAMS, CSharp
+from csharp import PROGRAMS, CSharp, by_name
 from package_compiler import Compiler, assemblies
 
 Told = dict[str, list[str]]
@@ -17,12 +17,7 @@ class ProjectProgram:
         self._built: dict[tuple[bool, bool], Path] = {}
 
     def tell(self, story: str, *arguments: object, packages: bool = True, sample: bool = True) -> Told:
-        """Lines by their first word."""
-        reported: Told = {}
-        for line in self._csharp.run(self._program(packages, sample), story, *arguments).splitlines():
-            key, value = line.split("\t", 1)
-            reported.setdefault(key, []).append(value)
-        return reported
+        return by_name(self._csharp.run(self._program(packages, sample), story, *arguments))
 
     def _program(self, packages: bool, sample: bool) -> Path:
         if (packages, sample) not in self._built:

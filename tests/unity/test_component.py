@@ -1,21 +1,16 @@
 """AvatarRenderer in a player loop of stand-ins: what it shows beside others, and what that costs."""
 
 import json
-import sys
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from component import Story, counts
-from csharp import ROOT
+from frame_bounds import FRAME_ORDER
 from synthetic_avatar import synthetic_avatar, with_surface
 
 from mua.asset import write
-
-sys.path.append(str(ROOT / "tests" / "parity"))
-
-from frame_bounds import FRAME_ORDER
 
 
 def test_a_component_without_an_avatar_has_nothing_and_takes_nothing(story: Story) -> None:

@@ -1,6 +1,5 @@
 """Levels of detail of AvatarRenderer and the budget of several, in a player loop of stand-ins."""
 
-import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -8,14 +7,10 @@ from typing import Any
 import numpy as np
 import pytest
 from component import Story, counts
-from csharp import ROOT
+from frame_bounds import FRAME_ORDER
 from synthetic_avatar import synthetic_avatar
 
 from mua.asset import write
-
-sys.path.append(str(ROOT / "tests" / "parity"))
-
-from frame_bounds import FRAME_ORDER
 
 
 def test_the_level_follows_the_camera_or_what_is_asked_for(story: Story) -> None:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from csharp import PROGRAMS, ROOT, RUNTIME, CSharp
+from csharp import PROGRAMS, ROOT, CSharp
 from synthetic_avatar import empty_avatar, sparse_avatar, synthetic_avatar
 
 from mua.asset.avatar import Avatar
@@ -18,7 +18,6 @@ from mua.avatar.coarser import coarsest, texel_length
 from mua.kernels.inverse_dwt import texel_tiles, upsampling_taps
 from mua.kernels.splat_project import pack_texels
 
-STAND_INS = Path(__file__).parent / "stand_ins"
 CASES = json.loads((ROOT / "tests" / "golden" / "level_choice.json").read_text())
 TYPES = {"texels": "<i4", "triangles": "<i4", "barycentrics": "<f4", "geometry": "<f4", "appearance": "<f4"}
 TYPES["one_sided"] = "?"
@@ -26,11 +25,7 @@ TYPES["one_sided"] = "?"
 
 @pytest.fixture(scope="module")
 def program(csharp: CSharp) -> Path:
-    file = csharp.build([RUNTIME / "Format"], library=True, name="Mua.Format")
-    engine = csharp.build([STAND_INS / "UnityEngine"], library=True, name="UnityEngine")
-    motion = csharp.build([RUNTIME / "Motion"], library=True, name="Mua.Motion", references=[file])
-    sources = [*sorted(RUNTIME.glob("*.cs")), RUNTIME / "Kernels", PROGRAMS / "LevelProgram.cs"]
-    return csharp.build(sources, references=[engine, file, motion])
+    return csharp.runtime(PROGRAMS / "LevelProgram.cs")
 
 
 @pytest.mark.parametrize("storage", ["f32", "f16", "i8"])

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import gen_golden
 import pytest
-from csharp import PROGRAMS, ROOT, CSharp
+from csharp import PROGRAMS, ROOT, CSharp, by_name
 from package_compiler import PACKAGE, Compiler
 from replay import replay
 
@@ -31,10 +31,7 @@ def program(csharp: CSharp) -> Path:
 @pytest.fixture
 def story(csharp: CSharp, program: Path) -> Story:
     def tell(name: str, *, package: object = PACKAGE, recording: object = "-", answered: object = "-") -> Told:
-        reported: Told = {}
-        for line in csharp.run(program, package, KERNELS, recording, answered, name).splitlines():
-            key, _, value = line.partition("\t")
-            reported.setdefault(key, []).append(value)
+        reported = by_name(csharp.run(program, package, KERNELS, recording, answered, name))
         assert reported["alive"] == ["0"], reported
         return reported
 

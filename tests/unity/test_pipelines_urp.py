@@ -1,13 +1,13 @@
 """What only URP does with cameras, in every stereo mode: scales, stacks, culling, newer editors; and the picture."""
 
 import itertools
-import sys
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
-from csharp import ROOT, CSharp
+from csharp import CSharp
+from frame_bounds import LEAST_PSNR, psnr
 from pipelines import EYE, MODES, MOVED, Mode, Recorded, built, cameras, label, run, step_of
 from replay import Drawn, replay
 from synthetic_avatar import synthetic_avatar
@@ -16,10 +16,6 @@ from mua.avatar.decode import decode_clip_frame
 from mua.avatar.rendering import render_premultiplied
 from mua.gpu import Device
 from mua.player.draw import SortedSplats, SplatRenderer, draw_image, image_format
-
-sys.path.append(str(ROOT / "tests" / "parity"))
-
-from frame_bounds import LEAST_PSNR, psnr
 
 
 @pytest.mark.parametrize(

@@ -2,14 +2,16 @@
 
 import json
 import shutil
-import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import gen_golden
 import pytest
-from csharp import PROGRAMS, ROOT, RUNTIME, CSharp
+from csharp import PROGRAMS, ROOT, RUNTIME, CSharp, by_name
+from golden import read_golden
+from mutations import FAULTS, Fault
 from replay import replay
 from synthetic_avatar import synthetic_avatar
 
@@ -19,13 +21,6 @@ from mua.deploy.player import answers
 from mua.errors import InputError
 from mua.gpu import Device
 
-sys.path.append(str(ROOT / "tests" / "parity"))
-
-import gen_golden
-from golden import read_golden
-from mutations import FAULTS, Fault
-
-STAND_INS = Path(__file__).parent / "stand_ins"
 KERNELS = ROOT / "ComputeShaders"
 RUN = "0123abcd"
 SELF_TEST = ("-muaSelfTest", "-muaRun", RUN)
@@ -64,15 +59,8 @@ Story = Callable[..., Ran]
 
 @pytest.fixture(scope="module")
 def program(csharp: CSharp) -> Path:
-    engine = csharp.build([STAND_INS / "UnityEngine"], library=True, name="UnityEngine")
-    file = csharp.build([RUNTIME / "Format"], library=True, name="Mua.Format")
-    motion = csharp.build([RUNTIME / "Motion"], library=True, name="Mua.Motion", references=[file])
-    sources = [*sorted(RUNTIME.glob("*.cs")), RUNTIME / "Kernels", RUNTIME / "SelfTest"]
-    return csharp.build(
-        [*sources, PROGRAMS / "shared", PROGRAMS / "SelfTestProgram.cs"],
-        name="SelfTestProgram",
-        references=[engine, file, motion],
-    )
+    program = PROGRAMS / "SelfTestProgram.cs"
+    return csharp.runtime(RUNTIME / "SelfTest", PROGRAMS / "shared", program, name="SelfTestProgram")
 
 
 @pytest.fixture
@@ -92,11 +80,8 @@ def story(csharp: CSharp, program: Path, streaming: Path) -> Story:
     def tell(
         name: str = "Plays", *words: str, kernels: Path = KERNELS, recording: object = "-", answered: object = "-"
     ) -> Ran:
-        said: dict[str, list[str]] = {"Log": []}
         printed = csharp.run(program, kernels, streaming, recording, answered, name, *(words or SELF_TEST))
-        for line in printed.splitlines():
-            key, _, value = line.partition("\t")
-            said.setdefault(key, []).append(value)
+        said = {"Log": [], **by_name(printed)}
         assert (said["alive"], said["requests"]) == (["0"], ["0"]), said
         return Ran(said)
 

@@ -1,23 +1,19 @@
 """AvatarRenderer spreads a decode over displayed frames: what each shows, bit for bit against decodes at once."""
 
 import json
-import sys
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import pytest
 from csharp import ROOT, CSharp
+from frame_bounds import FRAME_ORDER, PARTS_ORDER
 from replay import replay
 from synthetic_avatar import synthetic_avatar
 
 from mua.arrays import Array
 from mua.asset import write
 from mua.gpu import Device
-
-sys.path.append(str(ROOT / "tests" / "parity"))
-
-from frame_bounds import FRAME_ORDER, PARTS_ORDER
 
 FRAMES = 24  # displayed
 POSED = len(FRAME_ORDER) - sum(map(len, PARTS_ORDER))  # dispatches of a frame that decodes nothing

@@ -15,7 +15,7 @@ import wgpu
 from csharp import PROGRAMS, ROOT, RUNTIME, CSharp
 from drawn import DEPTH_FORMAT, Target, UnityDraw, rows
 from rasterised import STROKES_BOUND, SURFACE_BOUND, Picture, Stroke, Wall, compare
-from recorded_frames import MIRROR, STAND_INS, place_of
+from recorded_frames import eye_lines, place_of
 from replay import Drawn, replay, value
 from shader_programs import VARIANTS, programs
 from synthetic_avatar import sparse_avatar, synthetic_avatar, with_surface
@@ -24,7 +24,7 @@ from mua import rotation
 from mua.arrays import Array
 from mua.asset import read, write
 from mua.asset.avatar import Avatar
-from mua.avatar.camera import EYE_DISTANCE, NEAR, Camera, orbit, stereo
+from mua.avatar.camera import EYE_DISTANCE, Camera, orbit, stereo
 from mua.avatar.decode import decode_clip_frame
 from mua.gpu import Device
 from mua.player.draw import image_format
@@ -54,17 +54,8 @@ METRES = 4.0  # that it spans
 
 @pytest.fixture(scope="module")
 def surface_program(csharp: CSharp) -> Path:
-    engine = csharp.build([STAND_INS / "UnityEngine"], library=True, name="UnityEngine")
-    file = csharp.build([RUNTIME / "Format"], library=True, name="Mua.Format")
-    motion = csharp.build([RUNTIME / "Motion"], library=True, name="Mua.Motion", references=[file])
-    sources = [
-        *sorted(RUNTIME.glob("*.cs")),
-        RUNTIME / "Kernels",
-        PROGRAMS / "shared",
-        PROGRAMS / "scenario",
-        PROGRAMS / "SurfaceProgram.cs",
-    ]
-    return csharp.build(sources, name="SurfaceProgram", references=[engine, file, motion])
+    sources = (PROGRAMS / "shared", PROGRAMS / "scenario", PROGRAMS / "SurfaceProgram.cs")
+    return csharp.runtime(*sources, name="SurfaceProgram")
 
 
 def arrays(path: Path) -> list[Array]:
@@ -112,10 +103,7 @@ def scene(csharp: CSharp, surface_program: Path, device: Device, tmp_path_factor
     centres = placed(posed(avatar).centres)
     bounds = np.stack([centres.min(axis=0), centres.max(axis=0)])
     cameras = stereo(orbit(bounds, screen=SCREEN, azimuth=0.7, elevation=0.3), EYE_DISTANCE)
-    lines = ["screen {} {} {}".format(*SCREEN, NEAR)]
-    for camera in cameras:
-        numbers = np.concatenate([(camera.view @ MIRROR).ravel(), camera.projection.ravel()])
-        lines.append("eye " + " ".join(repr(float(number)) for number in numbers))
+    lines = eye_lines(cameras)
     lines.append(f"decode {(FRAME + 0.02) / 24!r} " + " ".join(map(repr, PLACE)))
     scenario = folder / "scenario.txt"
     scenario.write_text("\n".join(lines))

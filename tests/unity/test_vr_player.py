@@ -5,7 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from csharp import PROGRAMS, ROOT, CSharp
+from csharp import PROGRAMS, ROOT, CSharp, by_name
 from package_compiler import Compiler, assemblies
 from synthetic_avatar import synthetic_avatar, with_surface
 from training import outside_of_training
@@ -48,11 +48,8 @@ def story(csharp: CSharp, program: Path, folder: Path) -> Story:
     ) -> Told:
         for seed, file in enumerate(files):
             put(folder / f"{file}.muaavatar", seed)
-        reported: Told = {"log": []}
-        said = csharp.run(program, KERNELS, name, folder, folder / "persistent", folder / "streaming", *told_player)
-        for line in said.splitlines():
-            key, value = line.split("\t", 1)
-            reported.setdefault(key, []).append(value)
+        folders = (folder, folder / "persistent", folder / "streaming")
+        reported = {"log": [], **by_name(csharp.run(program, KERNELS, name, *folders, *told_player))}
         assert (reported["alive"], reported["recorders"]) == (["0"], ["0"])
         return reported
 

@@ -6,8 +6,11 @@ It needs Debian's `chromium-headless-shell` (or `chromium`), Node and the packag
 import json
 import shutil
 import subprocess
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
+from threading import Thread
 from typing import Any
 
 from mua.share.site import Site
@@ -106,3 +109,15 @@ class Page:
 
     def close(self) -> None:
         self.do("close")
+
+
+@contextmanager
+def answered_by(handler: type[BaseHTTPRequestHandler]) -> Iterator[str]:
+    """The address of a server of another origin than the page's, with its answers by a handler."""
+    handler.log_message = lambda *_: None  # type: ignore[method-assign, assignment]
+    with ThreadingHTTPServer(("127.0.0.1", 0), handler) as server:
+        thread = Thread(target=server.serve_forever, args=(0.02,))
+        thread.start()
+        yield f"http://127.0.0.1:{server.server_port}"
+        server.shutdown()
+        thread.join()

@@ -3,12 +3,12 @@
 import gzip
 from collections.abc import Iterator
 from dataclasses import dataclass
-from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
-from threading import Event, Thread
+from http.server import BaseHTTPRequestHandler
+from threading import Event
 
 import pytest
 from synthetic_avatar import synthetic_avatar
-from web.browser import Page
+from web.browser import Page, answered_by
 from web.pages import ELEMENT, SENTENCE
 
 from mua.asset.write import encode
@@ -70,16 +70,9 @@ def breaking(content: bytes) -> Iterator[Breaking]:
             self.wfile.flush()
             arrived.wait(TIMEOUT)  # a browser forgets what it has not handed on when the connection breaks
 
-        def log_message(self, format: str, *arguments: object) -> None:
-            """Say nothing."""
-
-    with ThreadingHTTPServer(("127.0.0.1", 0), Handler) as server:
-        thread = Thread(target=server.serve_forever, args=(0.02,))
-        thread.start()
-        yield Breaking(f"http://127.0.0.1:{server.server_port}/a.muaavatar", asked, answers, firsts, arrived)
+    with answered_by(Handler) as address:
+        yield Breaking(f"{address}/a.muaavatar", asked, answers, firsts, arrived)
         arrived.set()
-        server.shutdown()
-        thread.join()
 
 
 def load(page: Page, breaking: Breaking, *answers: Answer, until: str) -> None:

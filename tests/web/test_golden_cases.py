@@ -1,21 +1,18 @@
 """The kernels meet the golden cases in a browser's own WGSL compiler, dispatched by the player's own modules."""
 
 import base64
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 from threading import Thread
 
 import numpy as np
 import pytest
+from golden import FOLDER, Golden, read_golden
+from test_golden import assert_met
 from web.browser import Browser, Page
 
 from mua.share.server import address, serving
 from mua.share.site import player_files
-
-sys.path.append(str(Path(__file__).parents[1] / "parity"))
-from golden import FOLDER, Golden, read_golden
-from test_golden import assert_met
 
 ALL = read_golden()
 SCRIPT = Path(__file__).with_name("golden.js")

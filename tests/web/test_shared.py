@@ -4,16 +4,15 @@ import base64
 import gzip
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
-from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from http.server import BaseHTTPRequestHandler
 from io import BytesIO
 from pathlib import Path
-from threading import Thread
 from typing import Any
 
 import numpy as np
 import pytest
 from PIL import Image
-from web.browser import Browser, Page, Serve
+from web.browser import Browser, Page, Serve, answered_by
 from web.pages import ELEMENT, LOSABLE, SENTENCE, SHADOW
 
 from mua.arrays import Array
@@ -156,15 +155,8 @@ def elsewhere() -> Iterator[str]:
             self.send_response(200)
             self.end_headers()
 
-        def log_message(self, format: str, *arguments: object) -> None:
-            """Say nothing."""
-
-    with ThreadingHTTPServer(("127.0.0.1", 0), Handler) as server:
-        thread = Thread(target=server.serve_forever, args=(0.02,))
-        thread.start()
-        yield f"http://127.0.0.1:{server.server_port}"
-        server.shutdown()
-        thread.join()
+    with answered_by(Handler) as address:
+        yield address
 
 
 def test_what_another_server_does_not_give_is_a_sentence(opened: Open, elsewhere: str) -> None:

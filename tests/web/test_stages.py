@@ -4,16 +4,16 @@ import base64
 import json
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from http.server import BaseHTTPRequestHandler
 from pathlib import Path
-from threading import Event, Thread
+from threading import Event
 from typing import Any
 
 import numpy as np
 import pytest
 from malformed import malformed, trailing
 from synthetic_avatar import synthetic_avatar, with_surface
-from web.browser import Page
+from web.browser import Page, answered_by
 from web.pages import ELEMENT, SENTENCE
 from web.test_modules import node, pytestmark  # noqa: F401  needs Node
 
@@ -153,21 +153,14 @@ def halves() -> Iterator[tuple[Give, Event]]:
             rest.wait(TIMEOUT)
             self.wfile.write(second)
 
-        def log_message(self, format: str, *arguments: object) -> None:
-            """Say nothing."""
-
-    with ThreadingHTTPServer(("127.0.0.1", 0), Handler) as server:
+    with answered_by(Handler) as address:
 
         def give(first: bytes, second: bytes, length: int) -> str:
             files["/slow.muaavatar"] = first, second, length
-            return f"http://127.0.0.1:{server.server_port}/slow.muaavatar"
+            return f"{address}/slow.muaavatar"
 
-        thread = Thread(target=server.serve_forever, args=(0.02,))
-        thread.start()
         yield give, rest
         rest.set()
-        server.shutdown()
-        thread.join()
 
 
 # Counts what is not transparent in an image.
@@ -227,26 +220,22 @@ def test_a_template_does_not_take_the_place_of_a_poster(page: Page, halves: tupl
     page.wait(f"{ELEMENT}.firstPicture > 0 && {poster}.hidden && {ELEMENT}.avatars[0].whole")
 
 
-def test_what_was_shown_goes_where_the_rest_is_damaged(page: Page, halves: tuple[Give, Event], packed: bytes) -> None:
-    give, rest = halves
-    end = int(parse_checked(packed)["stages"][1])
-    damaged = packed[end:-40] + bytes(byte ^ 1 for byte in packed[-40:])
-    show(page, give(packed[:end], damaged, len(packed)), "true")
-    rest.set()
-    page.wait(f"{SENTENCE}.includes('the file is damaged')")
-    assert page.evaluate(SENTENCE).startswith("slow.muaavatar: crc32: ")
-    assert page.evaluate(f"{ELEMENT}.avatars.length") == 0
-    assert seen(page) == 0
-
-
-def test_what_was_shown_goes_where_the_rest_does_not_come(
-    page: Page, halves: tuple[Give, Event], packed: bytes
+@pytest.mark.parametrize(
+    ("rest_of", "said"),
+    [
+        (lambda rest: rest[:-40] + bytes(byte ^ 1 for byte in rest[-40:]), "slow.muaavatar: crc32: "),
+        (lambda rest: b"", "slow.muaavatar was not fetched whole"),
+    ],
+    ids=["damaged", "absent"],
+)
+def test_what_was_shown_goes_where_the_rest_is_damaged_or_does_not_come(
+    page: Page, halves: tuple[Give, Event], packed: bytes, rest_of: Callable[[bytes], bytes], said: str
 ) -> None:
     give, rest = halves
     end = int(parse_checked(packed)["stages"][1])
-    show(page, give(packed[:end], b"", len(packed)), "true")
+    show(page, give(packed[:end], rest_of(packed[end:]), len(packed)), "true")
     rest.set()
-    page.wait(f"{SENTENCE}.includes('was not fetched whole')")
+    page.wait(f"{SENTENCE}.startsWith('{said}')")
     assert page.evaluate(f"{ELEMENT}.avatars.length") == 0
     assert seen(page) == 0
 

@@ -108,17 +108,6 @@ test("the controls follow an avatar before the page hears of it", async () => {
   );
 });
 
-test("an element whose src is taken away is empty and quiet", async () => {
-  const { loading, element, named } = begun({ src: "a" });
-  await loading.reload();
-  delete element.attributes.src;
-  await loading.reload();
-  await settled();
-  assert.equal(loading.player, null);
-  assert.equal(players[0].disposed, true);
-  assert.equal(named("controls.hush").length, 2);
-});
-
 test("files that a reader chose come back with another src, addresses do not", async () => {
   const { loading } = begun({ src: "a" });
   const file = { toString: () => "file" };
@@ -142,31 +131,6 @@ test("parts are drawn as they come, the first of them as the first", async () =>
   answers.a = async ({ part }) => (part(), await settled(), part(), await settled());
   await loading.add(["a"]);
   assert.deepEqual(named("show"), [[true], [false], [false]]);
-});
-
-test("a mesh without splats does not take the place of a poster", async () => {
-  const { loading, controls, named } = begun();
-  answers.a = async ({ part }) => (part(0), await settled(), part(3), await settled());
-  controls.poster.hidden = false;
-  await loading.add(["a"]);
-  assert.deepEqual(named("show"), [[true], [false]]);
-  const bare = begun();
-  await bare.loading.add(["a"]);
-  assert.deepEqual(bare.named("show"), [[true], [false], [false]]);
-});
-
-test("an avatar of which a part was shown is withdrawn where the rest is damaged", async () => {
-  const { loading, named } = begun();
-  answers.a = async ({ part }) => (part(), await settled(), Promise.reject(new AvatarError("damaged")));
-  await loading.add(["a"]);
-  assert.deepEqual([named("withdraw").length, named("error")], [1, [["damaged"]]]);
-});
-
-test("where nothing was shown, nothing is withdrawn", async () => {
-  const { loading, named } = begun();
-  answers.a = () => Promise.reject(new AvatarError("damaged"));
-  await loading.add(["a"]);
-  assert.deepEqual([named("withdraw"), named("error")], [[], [["damaged"]]]);
 });
 
 test("an avatar that comes when another src was set goes again, unseen", async () => {
@@ -234,22 +198,6 @@ test("a failure is said with a way to try again where the page named the file an
   }
 });
 
-test("what goes wrong while nobody waits stops the player and can be tried again", async () => {
-  const { loading, named } = begun({ src: "a" });
-  await loading.reload();
-  players[0].onerror(new AvatarError("The device is lost."));
-  assert.equal(players[0].stopped, true);
-  assert.deepEqual(named("controls.say"), [["The device is lost.", { again: true, close: false }]]);
-});
-
-test("a failed file leaves those that play alone", async () => {
-  const { loading } = begun({ src: "a" });
-  await loading.reload();
-  answers.b = () => Promise.reject(new AvatarError("no"));
-  await loading.add(["b"]);
-  assert.equal(players[0].stopped, false);
-});
-
 test("a player that did not open is opened anew when it is asked for again", async () => {
   const { loading, named } = begun({ src: "a" });
   opens = Promise.reject(new AvatarError("No device."));
@@ -297,16 +245,6 @@ test("a canvas has one player at a time, and those that nobody waits for are not
     ],
   );
   assert.deepEqual([named("load").length, named("error")], [1, []]);
-});
-
-test("how far all of src is, and whether it is there, is reported", async () => {
-  const { loading, named } = begun({ src: "a b" });
-  answers.a = ({ onProgress }) => onProgress(0.5, "half");
-  answers.b = ({ onProgress }) => (assert.equal(loading.done, false), onProgress(1, "Ready"));
-  const loads = loading.reload();
-  assert.equal(loading.done, false);
-  await loads;
-  assert.deepEqual([named("progress"), loading.done], [[[0.25], [1]], true]);
 });
 
 test("what failed is no longer waited for, nor what should have followed it", async () => {

@@ -127,18 +127,6 @@ function opened() {
   return { gpu, renderer: new Renderer(device, { width: 4, height: 4, getContext: () => context }, {}) };
 }
 
-test("avatars that came and went leave no memory behind", async () => {
-  const { gpu, renderer } = opened();
-  const before = [renderer.bytes, gpu.held.size];
-  const [first, second] = [await renderer.add(golden), await renderer.add(golden)];
-  const whole = await renderer.add(golden);
-  renderer.replace(first, whole);
-  assert.deepEqual(renderer.slots, [whole, second]);
-  renderer.remove(second);
-  renderer.remove(whole);
-  assert.deepEqual([renderer.bytes, gpu.held.size], before);
-});
-
 test("an avatar that the device has no room for is a sentence, and the others keep theirs", async () => {
   const { gpu, renderer } = opened();
   const slot = await renderer.add(golden);

@@ -80,31 +80,6 @@ for (const places of [
     near(up, [0, 1, -BEFORE - reach]);
   });
 
-test("entering and leaving is noted, and the canvas gets its picture back", async () => {
-  const engine = engineOf([0, 0, 0]);
-  const vr = new VR(engine);
-  await vr.enter();
-  assert.deepEqual([vr.headset, engine.noted.vr, headsets[0].device], [headsets[0], [true], "device"]);
-  vr.leave();
-  assert.equal(headsets[0].left, 1);
-  headsets[0].asks.ended();
-  assert.deepEqual([vr.headset, engine.noted.vr, engine.noted.drawn, engine.drawn], [null, [true, false], 1, ""]);
-  vr.leave();
-  assert.equal(headsets[0].left, 1);
-});
-
-test("a frame of the headset moves the clip on and draws what is posed", async () => {
-  const engine = engineOf([0, 0, 0]);
-  await new VR(engine).enter();
-  engine.playback.begin(0);
-  engine.playback.playing = true;
-  headsets[0].asks.draw(100, "picture", "eyes");
-  assert.ok(Math.abs(engine.playback.time - 0.1) < 1e-12);
-  assert.deepEqual(engine.noted.submitted, [["picture", "posed", "look", "eyes"]]);
-  headsets[0].asks.fail("broken");
-  assert.deepEqual(engine.noted.failed, ["broken"]);
-});
-
 test("a second click opens no second session, neither while the first opens nor after", async () => {
   const vr = new VR(engineOf([0, 0, 0]));
   await Promise.all([vr.enter(), vr.enter()]);
