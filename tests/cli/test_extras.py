@@ -111,6 +111,19 @@ def test_a_commands_extra_brings_all_that_it_may_import(name: str) -> None:
     assert reached(f"mua.cli.{name}") - BASE <= (brought(extra) if extra in EXTRAS else set()) | few
 
 
+def test_reading_decoding_and_a_picture_need_no_extra_and_are_loaded_when_asked_for(
+    avatar_file: Path, tmp_path: Path
+) -> None:
+    code = """import mua
+print(sorted({"numpy", "flatbuffers", "PIL"} & set(sys.modules)))
+avatar = mua.load(sys.argv[1])
+mua.save(sys.argv[1], avatar, storage="i8")
+mua.render(avatar.decode(avatar.clips[0].name, 1), size=(16, 16)).save(sys.argv[2])
+"""
+    assert run_bare(code, avatar_file, tmp_path / "a.png") == Ended(0, "[]\n", "")
+    assert (tmp_path / "a.png").is_file()
+
+
 @pytest.mark.parametrize(
     "module", ["mua.asset", "mua.avatar.decode", "mua.avatar.rendering", "mua.cli.inspect", "mua.cli.pack"]
 )

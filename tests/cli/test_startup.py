@@ -12,20 +12,8 @@ import mua
 from mua.files import inputs
 from mua.recording import layout
 
-COMMANDS = (
-    "bake",
-    "bench",
-    "capture",
-    "deploy",
-    "eval",
-    "export",
-    "inspect",
-    "pack",
-    "share",
-    "teach",
-    "train",
-    "view",
-)
+INSTALLED = importlib.metadata.distribution("mua").entry_points.select(group="console_scripts")
+COMMANDS = sorted(command.name.removeprefix("mua-") for command in INSTALLED)
 # What takes long to load, or is not there unless its extra was asked for.
 SLOW = (
     "torch",

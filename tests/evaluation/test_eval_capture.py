@@ -268,12 +268,19 @@ def test_a_wrong_option_is_a_sentence(
     assert sentence in command("eval", capture, *options).sentence
 
 
-def test_a_recording_has_no_pictures_to_compare_a_teacher_with(written: Path, command: Commands) -> None:
-    assert "can only be compared with the images of a capture" in command("eval", written, "--teacher", "x").sentence
-
-
-def test_systems_of_a_recording_are_trained_on_it(written: Path, command: Commands) -> None:
-    assert "--train-on x: only applies to a comparison" in command("eval", written, "--train-on", "x").sentence
+@pytest.mark.parametrize(
+    ("option", "sentence"),
+    [
+        ("--teacher", "can only be compared with the images of a capture"),
+        ("--train-on", "--train-on x: only applies to a comparison"),
+        ("--images", "--images x: only applies to a comparison with"),
+        ("--scale", "--scale 2: only applies to a comparison with"),
+    ],
+)
+def test_options_of_a_capture_are_refused_for_a_recording(
+    written: Path, command: Commands, option: str, sentence: str
+) -> None:
+    assert sentence in command("eval", written, option, "2" if option == "--scale" else "x").sentence
 
 
 def test_a_recording_of_another_character_is_refused(
@@ -282,11 +289,3 @@ def test_a_recording_of_another_character_is_refused(
     given = ("--teacher", teacher, "--system", "ours", "--train-on", written, "-o", tmp_path)
     ended = command("eval", capture, *given)
     assert f"--train-on {written}: its joints are not those of the capture's template" in ended.sentence
-
-
-def test_images_are_those_of_a_capture(written: Path, command: Commands) -> None:
-    assert "--images x: only applies to a comparison with" in command("eval", written, "--images", "x").sentence
-
-
-def test_systems_of_a_recording_have_one_size(written: Path, command: Commands) -> None:
-    assert "--scale 2: only applies to a comparison with" in command("eval", written, "--scale", "2").sentence

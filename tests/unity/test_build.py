@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 from csharp import CSharp
 from package_compiler import PACKAGE
+from package_content import Content
 from project_program import ProjectProgram, Told
 
 from mua.deploy.build import AGAIN, ERRORS
@@ -165,15 +166,7 @@ def test_each_command_builds_for_its_platform(program: ProjectProgram, tmp_path:
     assert said(reported).startswith(f"MUA-BUILD FAIL This editor cannot build for {name}: ")
 
 
-def test_the_sample_has_what_the_build_looks_for() -> None:
-    source = (PACKAGE / "Editor" / "PlayerSample.cs").read_text()
-    name, kind, method = (
-        re.findall(rf'const string {word} = "(.+)"', source)[0] for word in ("Name", "SceneType", "SceneMethod")
-    )
-    sample = next(
-        each for each in json.loads((PACKAGE / "package.json").read_text())["samples"] if each["displayName"] == name
-    )
-    namespace, type_name = kind.rsplit(".", 1)
-    scene = (PACKAGE / sample["path"] / "Editor" / f"{type_name}.cs").read_text()
-    assert f"namespace {namespace}\n" in scene
-    assert f"public static void {method}(string path)" in scene
+def test_the_sample_has_what_the_build_looks_for(content: Content) -> None:
+    samples = json.loads((PACKAGE / "package.json").read_text())["samples"]
+    assert "VR Player" in [sample["displayName"] for sample in samples]
+    assert "Mua.Samples.VrPlayer.Editor.PlayerScene.Create" in content.declared["member"]

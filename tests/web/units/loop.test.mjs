@@ -55,14 +55,6 @@ test("a display that showed nothing for an hour is one short step", async () => 
   assert.deepEqual(reported.ticks, [0.25, 0]);
 });
 
-test("what changes is drawn once, however often it is asked for", async () => {
-  const { loop, reported } = begun();
-  for (let i = 0; i < 3; i++) loop.redraw();
-  assert.equal(frames.length, 1);
-  await show(0);
-  assert.deepEqual([reported.drawn, frames.length], [1, 0]);
-});
-
 test("a picture that fails is reported; one of a player that was given back meanwhile is not", async () => {
   for (const [given, wanted] of [
     [false, ["broken"]],

@@ -19,31 +19,6 @@ test("one avatar stands where it is, also if it is not in the middle of its box"
   assert.deepEqual(player.avatars[0].place, [0, 0, 0]);
 });
 
-test("several stand side by side, their row in the middle, with 15 cm between them", () => {
-  const { stage, player } = staged({}, box(1, 0.5), box(0.4), box(0.8, -2));
-  stage.arrange();
-  const spans = player.avatars.map(({ bounds: [low, high], place }) => [low[0] + place[0], high[0] + place[0]]);
-  for (const [i, [low]] of spans.slice(1).entries()) assert.ok(Math.abs(low - spans[i][1] - 0.15) < 1e-12);
-  assert.ok(Math.abs(spans[0][0] + spans[2][1]) < 1e-12);
-  assert.deepEqual(
-    player.avatars.map(({ place }) => place.slice(1)),
-    [
-      [0, 0],
-      [0, 0],
-      [0, 0],
-    ],
-  );
-});
-
-test("the camera stands where the attributes say and sees all", () => {
-  const { stage, player } = staged({ azimuth: "30", elevation: "-10" }, box(1));
-  stage.reset();
-  assert.deepEqual(player.framed, [undefined]);
-  assert.equal(player.camera.azimuth, 30 * DEGREE);
-  assert.equal(player.camera.elevation, -10 * DEGREE);
-  assert.equal(stage.framed, 4);
-});
-
 test("without attributes it stands before them", () => {
   const { stage, player } = staged({}, box(1));
   Object.assign(player.camera, { azimuth: 1, elevation: 1 });
@@ -61,15 +36,6 @@ test("each avatar is looked at in turn, and the first again where they stand ane
   stage.arrange();
   stage.lookAtNext();
   assert.deepEqual(player.framed.at(-1), [first]);
-});
-
-test("it goes round by so many degrees a second", () => {
-  const { stage, player } = staged({ orbit: "12" }, box(1));
-  stage.orbit(0.5);
-  assert.ok(Math.abs(player.camera.azimuth - 6 * DEGREE) < 1e-12);
-  const still = staged({}, box(1));
-  still.stage.orbit(5);
-  assert.equal(still.player.camera.azimuth, 0);
 });
 
 test("a zoom is held by the distance from which all is seen, however often", () => {

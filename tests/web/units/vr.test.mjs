@@ -97,12 +97,6 @@ test("after a refusal it can be tried again", async () => {
   assert.equal(vr.headset, headsets[0]);
 });
 
-test("without an avatar or a device there is nothing to show", async () => {
-  for (const engine of [engineOf(), Object.assign(engineOf([0, 0, 0]), { renderer: null })])
-    await assert.rejects(new VR(engine).enter(), { name: "AvatarError" });
-  assert.equal(headsets.length, 0);
-});
-
 test("a device that is lost while the session opens ends it, and nobody is noted of a beginning or an end", async () => {
   const engine = engineOf([0, 0, 0]);
   const vr = new VR(engine);
