@@ -214,10 +214,10 @@ def test_a_number_that_no_player_could_read_is_named_with_file_field_and_remedy(
     grown = dataclasses.replace(avatar.appearance, mlp=(*hidden, dataclasses.replace(last, weight=weight)))
     with pytest.raises(InputError) as refused:
         write(tmp_path / "a.muaavatar", dataclasses.replace(avatar, appearance=grown), storage=storage)
-    told = str(refused.value)
-    assert told.startswith(f"{tmp_path / 'a.muaavatar'}: appearance.mlp[{len(hidden)}].weight: the value -71426.1 ")
-    assert "up to 65504" in told
-    assert "mua-train --check" in told
+    refusal = str(refused.value)
+    assert refusal.startswith(f"{tmp_path / 'a.muaavatar'}: appearance.mlp[{len(hidden)}].weight: the value -71426.1 ")
+    assert "up to 65504" in refusal
+    assert "mua-train --check" in refusal
     assert list(tmp_path.iterdir()) == []
 
 
@@ -231,13 +231,13 @@ def test_flatc_reads_the_same_values(tmp_path: Path) -> None:
     schema = ROOT / "schemas" / "muaavatar.fbs"
     command = [flatc, "--json", "--strict-json", "--raw-binary", "-o", str(tmp_path), str(schema), "--", str(path)]
     subprocess.run(command, check=True)
-    told = json.loads((tmp_path / "a.json").read_text())
+    peeked = json.loads((tmp_path / "a.json").read_text())
     ours = load(path)
-    assert told["skeleton"]["names"] == ours["skeleton"]["names"]
-    assert told["crc32"] == ours["crc32"]
-    assert told["wavelet"]["rec_hi"] == pytest.approx(ours["wavelet"]["rec_hi"].tolist(), abs=1e-9)
+    assert peeked["skeleton"]["names"] == ours["skeleton"]["names"]
+    assert peeked["crc32"] == ours["crc32"]
+    assert peeked["wavelet"]["rec_hi"] == pytest.approx(ours["wavelet"]["rec_hi"].tolist(), abs=1e-9)
     for name in ("ll_basis", "ll_mean", "static_offset"):
-        ours_tensor, told_tensor = ours["geometry"][name], told["geometry"][name]
-        assert told_tensor["data"] == ours_tensor["data"].tolist()
-        assert told_tensor["shape"] == ours_tensor["shape"].tolist()
-        assert told_tensor.get("type", "F32") == ours_tensor["type"]
+        ours_tensor, peeked_tensor = ours["geometry"][name], peeked["geometry"][name]
+        assert peeked_tensor["data"] == ours_tensor["data"].tolist()
+        assert peeked_tensor["shape"] == ours_tensor["shape"].tolist()
+        assert peeked_tensor.get("type", "F32") == ours_tensor["type"]

@@ -94,8 +94,8 @@ def test_a_shortfall_ends_the_command_with_a_status_of_its_own(
     except typer.Exit as end:
         ended = end.exit_code
     assert ended == status
-    said = capsys.readouterr().err
-    assert said.startswith("warning: kick: ") if status else not said
+    warned = capsys.readouterr().err
+    assert warned.startswith("warning: kick: ") if status else not warned
 
 
 def test_how_far_outside_is_the_mean_over_frames() -> None:

@@ -16,7 +16,7 @@ import torch
 from captures import FRAMES, make_capture
 from commands import Commands, Ended
 from PIL import Image
-from taught import FEW
+from small_teachers import FEW
 
 import mua
 from mua.baking import teacher_stages
@@ -119,13 +119,13 @@ def test_a_teacher_has_frames_of_any_motion(capture: Path, made: Path) -> None:
 
 
 def test_a_capture_that_holds_all_cameras_out_is_refused(capture: Path, tmp_path: Path, teach: Teach) -> None:
-    said = json.loads((capture / "capture.json").read_text())
-    for camera in said["cameras"]:
+    description = json.loads((capture / "capture.json").read_text())
+    for camera in description["cameras"]:
         camera["held_out"] = True
     for entry in capture.iterdir():
         if entry.name != "capture.json":
             (tmp_path / entry.name).symlink_to(entry)
-    (tmp_path / "capture.json").write_text(json.dumps(said))
+    (tmp_path / "capture.json").write_text(json.dumps(description))
     assert "every camera is held out" in teach(tmp_path, "-o", tmp_path / "teacher").sentence
 
 
@@ -217,10 +217,10 @@ def test_missing_pictures_are_said_once_and_do_not_end_the_training(
     spoilt_pictures(given, lambda image: None, "left")
     ended = teach(given, "-o", tmp_path / "teacher", *OPTIONS)
     assert ended.status == 0, ended
-    said = re.findall(
+    printed = re.findall(
         r"Camera left: has no images: there is no .*\.png\. .* count nowhere\.", " ".join(ended.out.split())
     )
-    assert len(said) == 1, ended.out
+    assert len(printed) == 1, ended.out
     assert (tmp_path / "teacher" / "teacher.json").is_file()
 
 

@@ -15,8 +15,8 @@ import torch
 from captures import FRAMES, make_capture
 from commands import Commands
 from PIL import Image
-from taught import FEW, material, teacher
-from taught import SETTINGS as SMALL
+from small_teachers import FEW, material, teacher
+from small_teachers import SETTINGS as SMALL
 from torch import Tensor
 
 import mua
@@ -191,12 +191,14 @@ def test_a_teacher_says_what_it_was_trained_with(capture: Path, lpips: Path, tmp
     )
     assert ended.status == 0, ended
     assert "no perceptual term" not in ended.out
-    said = json.loads((tmp_path / "t" / "teacher.json").read_text())["settings"]
-    recorded = {name: said[name] for name in ("channels", "texels", "drivable", "colour_correction", "refine", "seed")}
+    settings_used = json.loads((tmp_path / "t" / "teacher.json").read_text())["settings"]
+    recorded = {
+        name: settings_used[name] for name in ("channels", "texels", "drivable", "colour_correction", "refine", "seed")
+    }
     assert recorded == {
         **{"channels": 5, "texels": 80, "drivable": True, "colour_correction": False, "refine": 1.5, "seed": 3}
     }
-    assert (said["mean"]["steps"], said["texture"]["steps"]) == (FEW.mean.steps, 1)
+    assert (settings_used["mean"]["steps"], settings_used["texture"]["steps"]) == (FEW.mean.steps, 1)
     assert load_teacher(tmp_path / "t")[0].rig.texels.size == 80
 
 

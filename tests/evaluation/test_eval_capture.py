@@ -14,8 +14,8 @@ from commands import Commands
 from compared import SETTINGS as QUICK
 from empty_entries import nothing
 from PIL import Image
+from small_teachers import FEW
 from synthetic_avatar import synthetic_avatar
-from taught import FEW
 
 import mua
 from mua.asset.write import write
@@ -186,22 +186,22 @@ def test_the_command_trains_systems_at_several_sizes_and_once(
     output = tmp_path / "evaluation"
     ended = command("eval", *order, "-o", output)
     assert ended.status == 0, ended
-    told = json.loads((output / "results.json").read_text())
-    rows = {one["name"]: one for one in told["entries"]}
+    results = json.loads((output / "results.json").read_text())
+    rows = {one["name"]: one for one in results["entries"]}
     assert {"ours x0.5", "ours", "linear x0.5", "linear"} < set(rows)
-    (equal,) = (one for one in told["entries"] if one["system"] == "linear" and one["scale"] not in (0.5, 1))
+    (equal,) = (one for one in results["entries"] if one["system"] == "linear" and one["scale"] not in (0.5, 1))
     assert equal["parameters"] <= rows["ours"]["parameters"]
     assert equal["flops"] <= rows["ours"]["flops"]
     within = {name for name, one in rows.items() if one["system"] == "linear" and one["flops"] <= rows["ours"]["flops"]}
     assert {equal["name"], "linear"} <= within
-    assert {one["rival"] for one in told["standings"]} <= within
-    assert len(told["standings"]) == len(filmed.SPLITS)
+    assert {one["rival"] for one in results["standings"]} <= within
+    assert len(results["standings"]) == len(filmed.SPLITS)
     assert "learnt" not in rows["ours"]
     assert "on 3 frames of the teacher at 64 texels" in (output / "results.md").read_text()
     with Image.open(output / "curve.png") as plot:
         assert np.asarray(plot).std() > 5
     trained = {path.name: path.stat().st_mtime_ns for path in (output / "work").glob("system *.pt")}
-    assert len(trained) == len([one for one in told["entries"] if one["system"]])
+    assert len(trained) == len([one for one in results["entries"] if one["system"]])
     before = (output / "results.json").read_bytes()
     assert command("eval", *order, "-o", output).status == 0
     assert {path.name: path.stat().st_mtime_ns for path in (output / "work").glob("system *.pt")} == trained

@@ -94,11 +94,11 @@ def test_draws_panel_and_figure_over_the_background(window: Driven) -> None:
 
 
 def test_the_panel_says_of_how_many_splats_the_figure_is(window: Driven, monkeypatch: pytest.MonkeyPatch) -> None:
-    said: list[str] = []
-    monkeypatch.setattr("mua.player.panel.imgui.text_disabled", said.append)
+    texts: list[str] = []
+    monkeypatch.setattr("mua.player.panel.imgui.text_disabled", texts.append)
     window.picture()
-    assert f"{window.session.splats:,} splats, {window.session.level}" in said
-    assert f"outside of training: {window.session.outside:.0%}" in said
+    assert f"{window.session.splats:,} splats, {window.session.level}" in texts
+    assert f"outside of training: {window.session.outside:.0%}" in texts
 
 
 def test_orbits_pans_and_zooms_by_mouse(window: Driven) -> None:

@@ -16,8 +16,8 @@ WIDE = 1500  # a layer that needs more than one frame's chunk
 SECOND = 72  # frames of the program's player loop
 RATE = 24  # of the synthetic avatars
 TURNED, TRANSLATED = 1e-6, 1e-5  # float32 of a few transforms on top of each other
-Told = dict[str, list[str]]
-Story = Callable[..., Told]
+Reports = dict[str, list[str]]
+Story = Callable[..., Reports]
 
 
 def build_program(csharp: CSharp) -> Path:
@@ -41,7 +41,7 @@ def write_avatars(folder: Path) -> None:
     (folder / "damaged.muaavatar").write_bytes(content)
 
 
-def tell(csharp: CSharp, program: Path, folder: Path, name: str, *files: str) -> Told:
+def tell(csharp: CSharp, program: Path, folder: Path, name: str, *files: str) -> Reports:
     """What a story says, by key; all that it made is given back at its end."""
     printed = csharp.run(program, KERNELS, name, *(folder / f"{file}.muaavatar" for file in files))
     reported = {"log": [], **by_name(printed)}

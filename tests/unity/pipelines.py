@@ -100,7 +100,7 @@ class Recorded:
 
     mode: Mode
     path: Path
-    said: dict[str, list[str]]
+    reported: dict[str, list[str]]
     events: list[Event]
 
     def frames(self, name: str) -> list[list[Event]]:
@@ -164,6 +164,6 @@ def run(csharp: CSharp, program: Path, mode: Mode, folder: Path) -> Recorded:
     write(folder / "avatar.muaavatar", with_surface(synthetic_avatar(1)), storage="f16")
     (folder / "eyes.txt").write_text("\n".join(eye_lines(cameras())))
     given = (mode.pipeline, mode.stereo, folder / "eyes.txt", folder / "avatar.muaavatar")
-    said = {"log": [], **by_name(csharp.run(program, ROOT / "ComputeShaders", folder / "recording", *given))}
+    reported = {"log": [], **by_name(csharp.run(program, ROOT / "ComputeShaders", folder / "recording", *given))}
     events = [json.loads(line) for line in (folder / "recording.json").read_text().splitlines()]
-    return Recorded(mode, folder / "recording", said, events)
+    return Recorded(mode, folder / "recording", reported, events)

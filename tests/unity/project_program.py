@@ -5,7 +5,7 @@ from pathlib import Path
 from csharp import PROGRAMS, CSharp, by_name
 from package_compiler import Compiler, assemblies
 
-Told = dict[str, list[str]]
+Reports = dict[str, list[str]]
 PACKAGES = ("Unity.RenderPipelines.", "Unity.XR.Management", "Unity.XR.OpenXR")
 
 
@@ -16,7 +16,7 @@ class ProjectProgram:
         self._csharp = csharp
         self._built: dict[tuple[bool, bool], Path] = {}
 
-    def tell(self, story: str, *arguments: object, packages: bool = True, sample: bool = True) -> Told:
+    def tell(self, story: str, *arguments: object, packages: bool = True, sample: bool = True) -> Reports:
         return by_name(self._csharp.run(self._program(packages, sample), story, *arguments))
 
     def _program(self, packages: bool, sample: bool) -> Path:

@@ -15,8 +15,8 @@ from training import outside_of_training
 
 from mua.asset import write
 
-Told = dict[str, list[list[str]]]
-Story = Callable[..., Told]
+Reports = dict[str, list[list[str]]]
+Story = Callable[..., Reports]
 
 
 @pytest.fixture(scope="module")
@@ -34,8 +34,8 @@ def program(csharp: CSharp) -> Path:
 
 @pytest.fixture
 def story(csharp: CSharp, program: Path) -> Story:
-    def tell(name: str, *files: Path) -> Told:
-        reported: Told = {"log": [], "dialog": [], "undo": [], "saved": [], "object": []}
+    def tell(name: str, *files: Path) -> Reports:
+        reported: Reports = {"log": [], "dialog": [], "undo": [], "saved": [], "object": []}
         for line in csharp.run(program, ROOT / "ComputeShaders", name, *files).splitlines():
             key, *values = line.split("\t")
             reported.setdefault(key, []).append(values)

@@ -57,7 +57,7 @@ def test_compatibility_mode_is_refused_once(universal: Recorded) -> None:
     assert [step_of(event) for frame in universal.frames("compatibility") for event in frame] == [
         f"submit {name}" for _ in range(2 * universal.mode.passes) for name in ("main", "other")
     ]
-    assert sum("Compatibility Mode" in line for line in universal.said["log"]) == 1
+    assert sum("Compatibility Mode" in line for line in universal.reported["log"]) == 1
 
 
 @pytest.mark.parametrize("mode", [mode for mode in MODES if mode.pipeline == "urp"], ids=label)

@@ -88,8 +88,8 @@ class Recorded:
         self.cameras = {shot.label: self._cameras(shot) for shot in SHOTS}
         scenario = folder / "scenario.txt"
         scenario.write_text("".join(self._lines(shot) for shot in SHOTS) + "again 200\n")
-        said = csharp.run(frame_program, ROOT / "ComputeShaders", folder / "recording", scenario, *files)
-        self.said = [line.split() for line in said.splitlines()]
+        printed = csharp.run(frame_program, ROOT / "ComputeShaders", folder / "recording", scenario, *files)
+        self.printed = [line.split() for line in printed.splitlines()]
         self.replayed: Replayed = replay(device, folder / "recording")
 
     def _exact(self, shot: Shot) -> Splats:
@@ -250,7 +250,7 @@ def test_the_dispatches_are_those_of_the_desktop_player(recorded: Recorded) -> N
 
 
 def test_frames_allocate_nothing_and_leave_nothing_behind(recorded: Recorded) -> None:
-    said = {words[0]: words[1:] for words in recorded.said}
-    assert said["made"] == ["0"]
-    assert said["alive"] == ["0"]
-    assert said["allocated"] == ["0"]
+    printed = {words[0]: words[1:] for words in recorded.printed}
+    assert printed["made"] == ["0"]
+    assert printed["alive"] == ["0"]
+    assert printed["allocated"] == ["0"]

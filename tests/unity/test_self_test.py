@@ -42,12 +42,12 @@ CAUGHT = {  # by kernel, a fault that its golden cases show
 class Ran:
     """What the program printed: values by name, messages of the log by kind."""
 
-    said: dict[str, list[str]]
+    reports: dict[str, list[str]]
 
     @property
     def cases(self) -> list[self_test.Case]:
         """As mua-deploy reads them from the log."""
-        return self_test.collect(answers(self.said["Log"], self_test.MARK, RUN))
+        return self_test.collect(answers(self.reports["Log"], self_test.MARK, RUN))
 
     @property
     def failed(self) -> dict[str, str]:
@@ -81,9 +81,9 @@ def story(csharp: CSharp, program: Path, streaming: Path) -> Story:
         name: str = "Plays", *words: str, kernels: Path = KERNELS, recording: object = "-", answered: object = "-"
     ) -> Ran:
         printed = csharp.run(program, kernels, streaming, recording, answered, name, *(words or SELF_TEST))
-        said = {"Log": [], **by_name(printed)}
-        assert (said["alive"], said["requests"]) == (["0"], ["0"]), said
-        return Ran(said)
+        reports = {"Log": [], **by_name(printed)}
+        assert (reports["alive"], reports["requests"]) == (["0"], ["0"]), reports
+        return Ran(reports)
 
     return tell
 
@@ -104,8 +104,8 @@ def test_every_case_passes(device: Device, story: Story, tmp_path: Path, name: s
     ran = story(name, answered=answer(device, recording))
     assert ran.failed == {}
     assert len(ran.cases) == CASES
-    assert ran.said["Log"][-1] == f"MUA-SELFTEST {RUN} PASS {CASES}/{CASES}"
-    assert ran.said["exit"] == ["0"]
+    assert ran.reports["Log"][-1] == f"MUA-SELFTEST {RUN} PASS {CASES}/{CASES}"
+    assert ran.reports["exit"] == ["0"]
 
 
 @pytest.mark.parametrize("kernel", CAUGHT)
@@ -122,7 +122,7 @@ def test_a_fault_of_a_kernel_fails_its_cases(
     ran = story(answered=answer(device, recording))
     assert {name.split("/")[0] for name in ran.failed} == {kernel}
     assert all("wanted" in what for what in ran.failed.values())
-    assert ran.said["exit"] == ["1"]
+    assert ran.reports["exit"] == ["1"]
 
 
 def test_a_case_is_named_by_entry_point_and_content(story: Story) -> None:
@@ -136,7 +136,7 @@ def test_the_player_tests_every_kernel_that_has_golden_files(story: Story) -> No
 
 
 def test_a_device_is_described_in_a_line(story: Story) -> None:
-    described = story().said["Log"][0]
+    described = story().reports["Log"][0]
     assert described.startswith("MUA device: stand-in; ")
     assert "Vulkan" in described
 
@@ -242,16 +242,16 @@ def test_a_golden_file_that_is_cut_fails_once(story: Story, streaming: Path) -> 
 
 
 def test_a_player_without_arguments_tests_nothing(story: Story) -> None:
-    assert story("Plays", "-another").said["Log"] == []
+    assert story("Plays", "-another").reports["Log"] == []
 
 
 @pytest.mark.parametrize("name", ["Plays", "HasScene"])
 def test_a_bench_says_when_samples_count(story: Story, name: str) -> None:
     ran = story(name, *BENCH)
-    lines = [line for said in ran.said["Log"] for line in (VRAPI, said)]
+    lines = [line for reports in ran.reports["Log"] for line in (VRAPI, reports)]
     assert len(bench.collect(lines, RUN)) == 1
-    assert ran.said["Log"][-2:] == [f"MUA-BENCH {RUN} START first", f"MUA-BENCH {RUN} END"]
-    assert (ran.said["over"], ran.said["exit"]) == (["True"], ["0"])
+    assert ran.reports["Log"][-2:] == [f"MUA-BENCH {RUN} START first", f"MUA-BENCH {RUN} END"]
+    assert (ran.reports["over"], ran.reports["exit"]) == (["True"], ["0"])
 
 
 def test_a_bench_measures_every_frame(story: Story, streaming: Path) -> None:
@@ -267,8 +267,8 @@ def test_a_bench_measures_every_frame(story: Story, streaming: Path) -> None:
 
 def test_a_bench_whose_report_cannot_be_written_says_so_and_ends(story: Story) -> None:
     ran = story("CannotWrite", *BENCH)
-    assert (ran.said["over"], ran.said["exit"]) == (["True"], ["0"])
-    [warned] = ran.said["Warning"]
+    assert (ran.reports["over"], ran.reports["exit"]) == (["True"], ["0"])
+    [warned] = ran.reports["Warning"]
     assert "bench.json could not be written: " in warned
 
 
@@ -280,21 +280,21 @@ def test_a_device_without_timings_leaves_them_out(story: Story, streaming: Path)
 
 def test_a_bench_takes_the_avatar_of_the_scene_alone(story: Story) -> None:
     ran = story("HasScene", *BENCH)
-    assert ran.said["shown"] == ["2"]
-    assert ran.said["on"] == ["True False 1"]
+    assert ran.reports["shown"] == ["2"]
+    assert ran.reports["on"] == ["True False 1"]
 
 
 @pytest.mark.parametrize("name", ["Plays", "LooksDown"])
 def test_a_bench_has_the_avatar_before_the_camera(story: Story, name: str) -> None:
-    middle = [float(word) for word in story(name, *BENCH).said["middle"][0].split()]
+    middle = [float(word) for word in story(name, *BENCH).reports["middle"][0].split()]
     assert middle == pytest.approx([0, 0, 2], abs=0.3)  # the clip moves it
 
 
 def failure(ran: Ran) -> str:
     """What mua-deploy tells of a bench that failed."""
-    assert (ran.said["over"], ran.said["exit"]) == (["True"], ["1"])
+    assert (ran.reports["over"], ran.reports["exit"]) == (["True"], ["1"])
     with pytest.raises(InputError) as raised:
-        bench.collect(ran.said["Log"], RUN)
+        bench.collect(ran.reports["Log"], RUN)
     return str(raised.value)
 
 

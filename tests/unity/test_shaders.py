@@ -44,9 +44,9 @@ def test_every_variant_compiles_with_the_engines_own_includes(tmp_path: Path, en
     path = engine.write(program, tmp_path)
     for defines in ENGINE_VARIANTS:
         for entry, stage in ((program.vertex, "vert"), (program.fragment, "frag")):
-            compiled, said = engine.bytecode(path, entry, stage, defines)
-            assert compiled.is_file(), f"{entry} {defines}: {said}"
-            assert said == [], f"{entry} {defines}"
+            compiled, printed = engine.bytecode(path, entry, stage, defines)
+            assert compiled.is_file(), f"{entry} {defines}: {printed}"
+            assert printed == [], f"{entry} {defines}"
 
 
 @pytest.mark.parametrize("program", PROGRAMS, ids=str)

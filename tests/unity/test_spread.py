@@ -43,8 +43,8 @@ class Watched:
         """With the spread on, and off."""
         file = self._folder / "first.muaavatar"
         write(file, synthetic_avatar(1), storage="f16")
-        said = self._csharp.run(self._program, ROOT / "ComputeShaders", story, file)
-        reported = [line.split("\t", 1) for line in said.splitlines()]
+        printed = self._csharp.run(self._program, ROOT / "ComputeShaders", story, file)
+        reported = [line.split("\t", 1) for line in printed.splitlines()]
         assert ["alive", "0"] in reported
         sets = [int(value) for name, value in reported if name == "sets"]
         spread, at_once = (

@@ -79,8 +79,8 @@ def test_triangles_and_those_about_each_texel_are_the_desktop_players(
 
 
 def test_a_file_without_a_surface_is_told_in_a_sentence(csharp: CSharp, surface_program: Path, tmp_path: Path) -> None:
-    said = csharp.run(surface_program, "grid", ROOT / "tests" / "golden" / "synthetic.muaavatar", tmp_path / "grid")
-    assert said.strip() == "the file holds no surface to show; bake it again."
+    printed = csharp.run(surface_program, "grid", ROOT / "tests" / "golden" / "synthetic.muaavatar", tmp_path / "grid")
+    assert printed.strip() == "the file holds no surface to show; bake it again."
 
 
 @dataclass(frozen=True)
@@ -90,7 +90,7 @@ class Scene:
     avatar: Avatar
     cameras: tuple[Camera, ...]
     drawn: dict[str, Drawn]  # by pass
-    said: dict[str, list[int]]
+    printed: dict[str, list[int]]
 
 
 @pytest.fixture(scope="module")
@@ -107,9 +107,9 @@ def scene(csharp: CSharp, surface_program: Path, device: Device, tmp_path_factor
     lines.append(f"decode {(FRAME + 0.02) / 24!r} " + " ".join(map(repr, PLACE)))
     scenario = folder / "scenario.txt"
     scenario.write_text("\n".join(lines))
-    said = csharp.run(surface_program, "draw", ROOT / "ComputeShaders", folder / "recording", scenario, *files)
+    printed = csharp.run(surface_program, "draw", ROOT / "ComputeShaders", folder / "recording", scenario, *files)
     draws = {PASSES[drawn.pass_index]: drawn for drawn in replay(device, folder / "recording").draws}
-    spoken = {words[0]: [int(word) for word in words[1:]] for words in map(str.split, said.splitlines())}
+    spoken = {words[0]: [int(word) for word in words[1:]] for words in map(str.split, printed.splitlines())}
     return Scene(avatar, cameras, draws, spoken)
 
 
@@ -331,15 +331,15 @@ def test_draws_of_indices(scene: Scene) -> None:
 
 
 def test_a_view_costs_nothing_until_it_is_wanted(scene: Scene) -> None:
-    assert scene.said["idle"] == [0, 0, 0]  # buffers, draws for the engine, draws for cameras
-    assert scene.said["first"][0] >= 2  # the grid may still be under way
-    assert scene.said["made"][0] == scene.said["again"][0] == 6  # ring, its starts, two of indices, rest, strokes
+    assert scene.printed["idle"] == [0, 0, 0]  # buffers, draws for the engine, draws for cameras
+    assert scene.printed["first"][0] >= 2  # the grid may still be under way
+    assert scene.printed["made"][0] == scene.printed["again"][0] == 6  # ring, its starts, two of indices, rest, strokes
 
 
 def test_an_editor_that_does_not_play_shows_the_geometry_at_once(scene: Scene) -> None:
-    assert scene.said["still"] == [1]
+    assert scene.printed["still"] == [1]
 
 
 def test_frames_allocate_nothing_and_leave_nothing_behind(scene: Scene) -> None:
-    assert scene.said["allocated"] == [0]
-    assert scene.said["alive"] == [0]
+    assert scene.printed["allocated"] == [0]
+    assert scene.printed["alive"] == [0]

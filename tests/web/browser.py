@@ -114,7 +114,7 @@ class Page:
 @contextmanager
 def answered_by(handler: type[BaseHTTPRequestHandler]) -> Iterator[str]:
     """The address of a server of another origin than the page's, with its answers by a handler."""
-    handler.log_message = lambda *_: None  # type: ignore[method-assign, assignment]
+    handler.log_message = lambda *_: None  # type: ignore[method-assign]
     with ThreadingHTTPServer(("127.0.0.1", 0), handler) as server:
         thread = Thread(target=server.serve_forever, args=(0.02,))
         thread.start()

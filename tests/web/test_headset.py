@@ -112,7 +112,7 @@ def image(page: Page, eye: int) -> Array:
 
 def enter(page: Page, file: Path, shown: str = "shadow") -> None:
     assert load(page) == ""
-    page.evaluate(f"(player.camera.azimuth = {AZIMUTH}, globalThis.said = [], player.onvr = (vr) => said.push(vr))")
+    page.evaluate(f"(player.camera.azimuth = {AZIMUTH}, globalThis.modes = [], player.onvr = (vr) => modes.push(vr))")
     show(page, SHOWN[shown], FRAME, read(file).encoding.rate)
     page.evaluate("player.enterVR()")
 
@@ -226,11 +226,11 @@ def test_the_page_has_its_picture_again_when_the_session_ends(opened: Open, smal
     enter(page, small)
     camera = page.evaluate("JSON.stringify(player.look.camera)")
     page.evaluate(f"headset.show(1000, {given(EYES)})")
-    assert page.evaluate("[player.vr, said]") == [True, [True]]
+    assert page.evaluate("[player.vr, modes]") == [True, [True]]
     held, drawn = page.evaluate("[player.room.headset.memory.textures.length, drawn]")
     page.evaluate(f"(globalThis.was = player.room.headset, {how})")
     page.wait("!player.vr")
-    assert page.evaluate("[player.vr, said]") == [False, [True, False]]
+    assert page.evaluate("[player.vr, modes]") == [False, [True, False]]
     assert page.evaluate("drawn") == drawn + 1
     assert page.evaluate("JSON.stringify(player.look.camera)") == camera
     assert (held, page.evaluate("was.memory.textures.length")) == (1, 0)
@@ -239,7 +239,7 @@ def test_the_page_has_its_picture_again_when_the_session_ends(opened: Open, smal
 
 
 @pytest.mark.parametrize(
-    ("before", "said"),
+    ("before", "sentence"),
     [
         ("headset.refused = 'denied by the reader'", "denied by the reader"),
         ("headset.adapters.push(false)", "The device does not fit the headset"),
@@ -247,13 +247,13 @@ def test_the_page_has_its_picture_again_when_the_session_ends(opened: Open, smal
     ],
     ids=["refused", "unfit device", "no floor"],
 )
-def test_a_session_that_is_refused_is_a_sentence(opened: Open, small: Path, before: str, said: str) -> None:
+def test_a_session_that_is_refused_is_a_sentence(opened: Open, small: Path, before: str, sentence: str) -> None:
     page = opened(before=FAKE, a=small.read_bytes())
     assert load(page) == ""
-    page.evaluate(f"({before}, globalThis.said = [], player.onvr = (vr) => said.push(vr))")
+    page.evaluate(f"({before}, globalThis.modes = [], player.onvr = (vr) => modes.push(vr))")
     reported = page.evaluate("player.enterVR().catch((error) => [error.constructor.name, error.message])")
-    assert reported == ["AvatarError", f"The headset cannot show the avatar: {said}"]
-    assert page.evaluate("[player.vr, said, headset.session?.ended ?? true]") == [False, [], True]
+    assert reported == ["AvatarError", f"The headset cannot show the avatar: {sentence}"]
+    assert page.evaluate("[player.vr, modes, headset.session?.ended ?? true]") == [False, [], True]
 
 
 def test_a_picture_that_cannot_be_drawn_leaves_the_headset_and_is_told(opened: Open, small: Path) -> None:

@@ -292,9 +292,9 @@ def test_a_picture_is_saved_under_the_avatars_name(opened: Open) -> None:
 def test_the_panel_says_how_far_outside_of_training_each_pose_is(opened: Open) -> None:
     far = avatar("far", far=2)
     page = opened({"src": "hero.muaavatar far.muaavatar"}, files={"far": far}, until="fake?.avatars.length === 2")
-    for seconds, said in ((1.2, "12 %, 24 %"), (0.3, "3 %, 6 %")):
+    for seconds, shares in ((1.2, "12 %, 24 %"), (0.3, "3 %, 6 %")):
         page.evaluate(f"{ELEMENT}.seek({seconds})")
-        page.wait(f"{part('.outside')}.textContent === 'Outside of training: {said}'")
+        page.wait(f"{part('.outside')}.textContent === 'Outside of training: {shares}'")
         assert page.evaluate(f"{ELEMENT}.outsideTraining") == pytest.approx(seconds / 10)
     page.evaluate(f"fake.avatars.map({ELEMENT}.dismiss, {ELEMENT})")
     assert page.evaluate(f"[{ELEMENT}.outsideTraining, {part('.outside')}.textContent]") == [0, ""]

@@ -147,9 +147,9 @@ def test_an_element_of_which_only_the_height_is_given_stays_in_its_place(opened:
 
 
 def test_a_page_with_the_policy_of_the_guide_plays_and_shows_its_poster(browser: Browser, serve: Serve) -> None:
-    said = re.search(r"content security policy needs (.*?),\s+as the", GUIDE.read_text(), re.DOTALL)
-    assert said
-    policy = "; ".join(["default-src 'none'", *re.findall(r"`(.*?)`", said[1].replace("\n", " "))])
+    quoted = re.search(r"content security policy needs (.*?),\s+as the", GUIDE.read_text(), re.DOTALL)
+    assert quoted
+    policy = "; ".join(["default-src 'none'", *re.findall(r"`(.*?)`", quoted[1].replace("\n", " "))])
     html = f"""<!doctype html><meta http-equiv="Content-Security-Policy" content="{policy}">
       <mua-avatar src="hero.muaavatar" poster="icon.svg" controls></mua-avatar>
       <script type="module" src="element.js"></script>"""
@@ -166,9 +166,9 @@ def test_a_page_that_is_opened_from_the_disk_says_what_to_do(browser: Browser, t
     page = browser.page((tmp_path / "hero" / "index.html").as_uri())
     stuck = "document.querySelector('#stuck')"
     page.wait(f"{stuck} && {stuck}.checkVisibility({{ visibilityProperty: true }})")
-    said = page.evaluate(f"{stuck}.innerText")
-    assert "python3 -m http.server" in said
-    assert "--single-file" in said
+    quoted = page.evaluate(f"{stuck}.innerText")
+    assert "python3 -m http.server" in quoted
+    assert "--single-file" in quoted
     assert page.evaluate("document.querySelector('#open').disabled")
     page.close()
 

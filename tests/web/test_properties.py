@@ -108,26 +108,26 @@ def test_what_cannot_be_shown_is_said_and_the_picture_stays(opened: Open) -> Non
       document.querySelector("mua-avatar").addEventListener("error", ({ detail }) => reported.push(detail.message));
     })"""
     page = opened({"src": "hero.muaavatar", "show": "splat"}, before=listen)
-    said = 'show="splat": "splat" cannot be shown, only splats, geometry, template, skeleton, shadow.'
-    assert page.evaluate(f"[fake.show.splats, reported, {SENTENCE}]") == [True, [said], said]
+    sentence = 'show="splat": "splat" cannot be shown, only splats, geometry, template, skeleton, shadow.'
+    assert page.evaluate(f"[fake.show.splats, reported, {SENTENCE}]") == [True, [sentence], sentence]
     page.evaluate(f"{ELEMENT}.show = 'template'")
     assert page.evaluate("[fake.show.splats, fake.show.template]") == [False, True]
 
 
 @pytest.mark.parametrize(
-    ("attribute", "value", "said"),
+    ("attribute", "value", "sentence"),
     [
         ("clip", "dnace", 'clip="dnace": hero has no such clip, only walk, wave.'),
         ("speed", "fast", 'speed="fast": expected a number.'),
     ],
 )
-def test_what_cannot_be_asked_for_is_said(opened: Open, attribute: str, value: str, said: str) -> None:
+def test_what_cannot_be_asked_for_is_said(opened: Open, attribute: str, value: str, sentence: str) -> None:
     page = opened({"src": "hero.muaavatar", attribute: value})
-    page.wait(f"{SENTENCE} === {json.dumps(said)}")
+    page.wait(f"{SENTENCE} === {json.dumps(sentence)}")
     assert page.evaluate("[fake.clip, fake.speed]") == ["walk", 1]
     page.evaluate(f"{ELEMENT}.{attribute} = {json.dumps({'clip': 'wave', 'speed': '2'}[attribute])}")
     page.evaluate(f"({ELEMENT}.setAttribute('{attribute}', '{value}'))")
-    page.wait(f"{SENTENCE} === {json.dumps(said)}")
+    page.wait(f"{SENTENCE} === {json.dumps(sentence)}")
 
 
 def test_a_clip_of_another_avatar_may_be_set_before_its_src(opened: Open) -> None:

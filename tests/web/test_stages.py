@@ -221,7 +221,7 @@ def test_a_template_does_not_take_the_place_of_a_poster(page: Page, halves: tupl
 
 
 @pytest.mark.parametrize(
-    ("rest_of", "said"),
+    ("rest_of", "sentence"),
     [
         (lambda rest: rest[:-40] + bytes(byte ^ 1 for byte in rest[-40:]), "slow.muaavatar: crc32: "),
         (lambda rest: b"", "slow.muaavatar was not fetched whole"),
@@ -229,13 +229,13 @@ def test_a_template_does_not_take_the_place_of_a_poster(page: Page, halves: tupl
     ids=["damaged", "absent"],
 )
 def test_what_was_shown_goes_where_the_rest_is_damaged_or_does_not_come(
-    page: Page, halves: tuple[Give, Event], packed: bytes, rest_of: Callable[[bytes], bytes], said: str
+    page: Page, halves: tuple[Give, Event], packed: bytes, rest_of: Callable[[bytes], bytes], sentence: str
 ) -> None:
     give, rest = halves
     end = int(parse_checked(packed)["stages"][1])
     show(page, give(packed[:end], rest_of(packed[end:]), len(packed)), "true")
     rest.set()
-    page.wait(f"{SENTENCE}.startsWith('{said}')")
+    page.wait(f"{SENTENCE}.startsWith('{sentence}')")
     assert page.evaluate(f"{ELEMENT}.avatars.length") == 0
     assert seen(page) == 0
 
