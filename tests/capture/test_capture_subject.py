@@ -56,9 +56,7 @@ def test_the_template_is_where_the_files_matrices_have_it(capture: Path) -> None
     posed = posed_template(found.surfaces, found.motion("training"))
     assert len(posed) == found.clip("training").frames > 1
     for frame, vertices in enumerate(posed):
-        np.testing.assert_allclose(
-            vertices[found.surfaces.faces], character_files.skinned(REST, truth[frame]), atol=CORNER_BOUND
-        )
+        np.testing.assert_allclose(vertices[found.surfaces.faces], files.skinned(REST, truth[frame]), atol=CORNER_BOUND)
 
 
 def test_outlines_lie_on_the_masks(capture: Path, command: Commands) -> None:

@@ -100,7 +100,14 @@ def test_properties_are_taken_away_by_none(opened: Open) -> None:
     page = opened({"src": "hero.muaavatar", "speed": "2", "budget": "7", "stereo": ""})
     page.evaluate(f"Object.assign({ELEMENT}, {{ speed: null, budget: undefined, stereo: false, src: '' }})")
     page.wait(f"{ELEMENT}.player === null")
-    assert page.evaluate(f"[{ELEMENT}.speed, {ELEMENT}.getAttribute('budget'), {ELEMENT}.stereo]") == [1, None, False]
+    assert page.evaluate(f"[{ELEMENT}.speed, {ELEMENT}.budget, {ELEMENT}.stereo]") == [1, None, False]
+
+
+@pytest.mark.parametrize("angle", ["azimuth", "elevation"])
+def test_the_view_turns_with_either_angle(opened: Open, angle: str) -> None:
+    page = opened({"src": "hero.muaavatar"})
+    page.evaluate(f"({ELEMENT}.{angle} = 45, 0)")
+    assert page.evaluate(f"fake.camera.{angle}") == pytest.approx(0.7854, abs=1e-4)
 
 
 def test_what_cannot_be_shown_is_said_and_the_picture_stays(opened: Open) -> None:

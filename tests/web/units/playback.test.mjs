@@ -40,6 +40,7 @@ test("each avatar plays its own clip of the name that was chosen, or its first",
     [40, 10],
   );
   playback.clip = "wave";
+  assert.equal(playback.time, 0);
   playback.time = 29 / RATE;
   assert.deepEqual(
     [WALK, OTHER].map((one) => playback.clipOf(one).frames),
