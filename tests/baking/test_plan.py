@@ -1,11 +1,9 @@
 """Which frames of a character's clips are recorded, and which are kept to test on."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 
-from mua.baking.plan import HELD_FRAMES, HELD_PART, RUN_UP, WHOLE_FRAMES, HeldOut, plan, split
+from mua.baking.plan import RUN_UP, WHOLE_FRAMES, HeldOut, plan, split
 from mua.errors import InputError
 from mua.pose.clip import Clip
 
@@ -65,10 +63,9 @@ def test_of_many_frames_some_are_kept_whole() -> None:
     assert max(planned.whole) > 980
 
 
-def test_held_out_clips_share_a_quarter_of_the_frames_up_to_so_many_each() -> None:
-    held = [HeldOut(clip(str(k), 100)) for k in range(3)]
-    few, many = (plan([clip("walk", 4000)], held, frames=frames)[1:] for frames in (40, 4000))
-    assert sum(len(one.wanted) for one in few) == 40 // HELD_PART
-    assert [len(one.wanted) for one in many] == [HELD_FRAMES] * 3
-    assert all(one.held_out and one.whole == one.wanted for one in (*few, *many))
-    assert SimpleNamespace(**vars(many[0])).run_up is None
+@pytest.mark.parametrize(("frames", "recorded"), [(1, [0, 0, 1]), (8, [0, 1, 1]), (40, [3, 3, 4]), (4000, [40, 40, 7])])
+def test_held_out_clips_share_a_quarter_of_the_frames_up_to_so_many_each(frames: int, recorded: list[int]) -> None:
+    held = [HeldOut(clip(name, count)) for name, count in (("walk", 100), ("turn", 200), ("nod", 7))]
+    planned = plan([clip("run", 5000)], held, frames=frames)[1:]
+    assert [len(one.wanted) for one in planned] == recorded
+    assert all(one.held_out and one.whole == one.wanted and one.run_up is None for one in planned)

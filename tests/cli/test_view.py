@@ -1,6 +1,5 @@
 """mua-view writes the image or video that it is asked for and refuses what it cannot show in a sentence."""
 
-import json
 import subprocess
 from pathlib import Path
 from typing import Any
@@ -8,7 +7,6 @@ from typing import Any
 import imageio_ffmpeg
 import numpy as np
 import pytest
-from bvh_files import BVH
 from commands import process
 from PIL import Image
 
@@ -149,19 +147,6 @@ def test_the_camera_orbits_and_follows(avatar_file: Path, tmp_path: Path) -> Non
     for i, choice in enumerate(choices):
         view([avatar_file], output=tmp_path / f"{i}.mp4", size="32", **choice)
     assert len({video(tmp_path / f"{i}.mp4", side=32)[-1].tobytes() for i in range(len(choices))}) == len(choices)
-
-
-def test_motion_of_another_file_moves_the_avatar(avatar_file: Path, tmp_path: Path) -> None:
-    motion = tmp_path / "wave.bvh"
-    motion.write_text(BVH)
-    mapping = tmp_path / "joints.json"
-    mapping.write_text(json.dumps({"root": "hips", "middle": "spine"}))
-    for frame in (0, 2):
-        chosen: dict[str, Any] = {"motion": motion, "mapping": mapping, "frame": frame}
-        view([avatar_file], output=tmp_path / f"{frame}.png", size="32", **chosen)
-    assert (pixels(tmp_path / "0.png") != pixels(tmp_path / "2.png")).any()
-    with pytest.raises(InputError, match=r"wave\.bvh"):
-        view([avatar_file], output=tmp_path / "v.png", motion=motion)
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,6 @@ from collections.abc import Iterator, Mapping
 from dataclasses import fields, replace
 from itertools import pairwise
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -22,7 +21,6 @@ from rendercanvas.offscreen import RenderCanvas
 
 from mua.arrays import Array
 from mua.cli.view_options import Asked, look_of
-from mua.errors import InputError
 from mua.gpu import Device
 from mua.player.panel import KEYS, WIDTH
 from mua.player.session import Session
@@ -30,7 +28,6 @@ from mua.player.shot import Look
 from mua.player.source import Source
 from mua.player.toggles import Toggles
 from mua.player.viewer import Viewer
-from mua.player.window import show
 
 SIZE = (640, 360)
 LOOK = look_of(Asked(), None)
@@ -239,51 +236,6 @@ def test_the_buttons_of_the_panel_go_a_frame_back_and_on(window: Driven, monkeyp
             pressed.setattr("mua.player.panel.imgui.button", lambda name, *_, label=label: name == label)
             window.picture()
         assert window.session.index == 3 + frames
-
-
-def test_draws_two_eyes_beside_each_other(window: Driven) -> None:
-    window.session.toggles = Toggles()
-    window.session.stereo = True
-    window.picture()
-    image = window.picture()
-    for half in (image[:, : SIZE[0] // 2], image[:, SIZE[0] // 2 :]):
-        assert (half != COLOR).any()
-
-
-@pytest.mark.parametrize(
-    "options",
-    [
-        {"show": "skeleton"},
-        {"azimuth": 90.0},
-        {"elevation": 50.0},
-        {"zoom": 2.0},
-        {"look_at": "tip", "zoom": 1.0},
-        {"stereo": True},
-    ],
-)
-def test_shows_what_the_options_ask_for(
-    device: Device, avatar_files: tuple[Path, ...], options: dict[str, Any]
-) -> None:
-    shown = []
-    for look in (LOOK, look_of(Asked(**options), None)):
-        driven = Driven(device, avatar_files, look)
-        shown.append(driven.picture()[:, WIDTH + 20 :])
-        driven.canvas.close()
-    assert (shown[0] != shown[1]).any()
-
-
-def test_has_the_background_asked_for(device: Device, avatar_files: tuple[Path, ...]) -> None:
-    driven = Driven(device, avatar_files, look_of(Asked(background="#204060"), None))
-    np.testing.assert_array_equal(driven.picture()[EMPTY][0, 0], [0x20, 0x40, 0x60])
-    driven.canvas.close()
-
-
-def test_says_that_there_is_no_display(avatar_files: tuple[Path, ...], monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(sys, "platform", "linux")
-    monkeypatch.delenv("DISPLAY", raising=False)
-    monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
-    with pytest.raises(InputError, match="a window needs a display and there is none; -o writes an image"):
-        show(Source(avatar_files), LOOK)
 
 
 @pytest.fixture
