@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mua.baking.plan import RUN_UP, WHOLE_FRAMES, HeldOut, plan, split
+from mua.baking.plan import WHOLE_FRAMES, HeldOut, plan, split
 from mua.errors import InputError
 from mua.pose.clip import Clip
 
@@ -20,14 +20,14 @@ def frames_of(one: Clip) -> list[int]:
 
 
 def test_the_last_fifth_of_each_clip_is_held_out_behind_two_seconds_of_run_up() -> None:
-    training, held = split([clip("walk", 100), clip("nod", 9), clip("turn", 10, rate=1.0)], [])
+    training, held = split([clip("walk", 100, rate=12.0), clip("nod", 9), clip("turn", 10)], [])
     assert [len(one) for one in training] == [80, 9, 8]
     assert [(one.clip.name, frames_of(one.clip)) for one in held] == [
         ("walk (end)", list(range(80, 100))),
         ("turn (end)", [8, 9]),
     ]
     runs = [frames_of(one.run_up) for one in held if one.run_up is not None]
-    assert runs == [list(range(80 - int(24 * RUN_UP), 80)), [6, 7]]
+    assert runs == [list(range(56, 80)), list(range(8))]
 
 
 def test_a_clip_whose_end_another_is_called_after_stays_whole() -> None:
