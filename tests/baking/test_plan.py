@@ -37,7 +37,8 @@ def test_a_clip_whose_end_another_is_called_after_stays_whole() -> None:
 
 def test_clips_that_are_named_are_held_out_whole() -> None:
     training, held = split([clip("walk", 20), clip("turn", 20)], ["turn"])
-    assert ([one.name for one in training], [len(one.clip) for one in held]) == (["walk"], [20])
+    assert [one.name for one in training] == ["walk"]
+    assert [(len(one.clip), one.run_up) for one in held] == [(20, None)]
     with pytest.raises(InputError, match="--hold-out jump: there is no such clip; expected walk"):
         split([clip("walk", 20)], ["jump"])
     with pytest.raises(InputError, match="--hold-out walk: leaves no clip to train on"):
