@@ -100,7 +100,7 @@ def test_properties_are_taken_away_by_none(opened: Open) -> None:
     page = opened({"src": "hero.muaavatar", "speed": "2", "budget": "7", "stereo": ""})
     page.evaluate(f"Object.assign({ELEMENT}, {{ speed: null, budget: undefined, stereo: false, src: '' }})")
     page.wait(f"{ELEMENT}.player === null")
-    assert page.evaluate(f"[{ELEMENT}.speed, {ELEMENT}.budget, {ELEMENT}.stereo]") == [1, None, False]
+    assert page.evaluate(f"[{ELEMENT}.speed, {ELEMENT}.budget === null, {ELEMENT}.stereo]") == [1, True, False]
 
 
 @pytest.mark.parametrize("angle", ["azimuth", "elevation"])
