@@ -16,7 +16,7 @@ from mua.asset.write import encode
 from mua.avatar.decode import decode_clip_frame
 
 GOLDEN = Path(__file__).parents[1] / "golden" / "packed.muaavatar"
-BARYCENTRIC = 1e-4  # of a triangle: as near as the writer lets a reader compute it
+BARYCENTRIC = 1e-4  # as near as the writer lets a reader compute a place in a triangle
 ORDER = ("skeleton", "texels", "details", "static_offset", "clips[1]")  # one part of each stage
 
 

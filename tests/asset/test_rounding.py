@@ -19,7 +19,7 @@ DEMO = Path(__file__).resolve().parents[2] / "build" / "demo" / "avatar.muaavata
 TEACHER = 53.6  # dB, of the demo's images beside the teacher's, of which the figure covers COVERED
 COVERED = 0.08
 LOSS = 0.1  # dB
-STEADY = 0.999  # of the pixels; in a few, two splats of like depth change places, whatever moved them
+STEADY = 0.999  # least share of pixels; in a few, two splats of like depth change places, whatever moved them
 
 
 @pytest.mark.parametrize(("step", "power"), [(1.0, 1.0), (0.9, 0.5), (0.26, 0.25), (3e-5, 2.0**-16)])

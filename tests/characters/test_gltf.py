@@ -82,7 +82,7 @@ def test_lumberjack_stands_upright_and_keeps_its_clips(shared_data: Any) -> None
     assert [(clip.name, len(clip)) for clip in surfaces.clips] == [("Walk", 31), ("Poses", 188)]
     assert surfaces.notes[0] == "Clips of a single pose are left out: A-pose."
     skeleton = surfaces.skeleton
-    assert len(skeleton.names) == 33  # of 53: the others carry no weights and have no bind pose
+    assert len(skeleton.names) == 33  # the other 20 carry no weights and have no bind pose
     assert skeleton.names[skeleton.root] == "DEF-spine_02"
     parents = {n: skeleton.names[p] for n, p in zip(skeleton.names, skeleton.parents, strict=True) if p >= 0}
     assert parents["DEF-thigh.L_023"] == parents["DEF-thigh.R_015"] == "DEF-spine_02"

@@ -40,7 +40,7 @@ finally:
 """
 
 
-ACTIONS = {"capture": ("check",)}  # of commands that do several things
+ACTIONS = {"capture": ("check",)}  # commands that do several things
 
 
 def started(name: str, *arguments: str | Path) -> Ended:

@@ -14,8 +14,8 @@ from mua.cli.view import view
 from mua.errors import InputError
 from mua.gpu import adapters
 
-SHADES = 2  # of 255, by which float32 may differ where many splats meet, and one for rounding to 8 bits
-CODED_SHADES = 3  # of 255, by which a plain colour may come back from 8-bit YCbCr: rounded thrice
+SHADES = 2  # in 255ths: float32 may differ by one where many splats meet, and rounding to 8 bits by another
+CODED_SHADES = 3  # in 255ths: a plain colour is rounded thrice on its way through 8-bit YCbCr
 
 
 def video(path: Path, *, side: int, channels: int = 3) -> np.ndarray:

@@ -355,7 +355,7 @@ def test_bench_puts_the_headset_back_after_ctrl_c(monkeypatch: pytest.MonkeyPatc
             try:
                 _, error = deploying.communicate(timeout=30)
             finally:
-                deploying.kill()  # of no effect on one that ended
+                deploying.kill()  # has no effect on one that ended
     assert deploying.returncode != 0
     assert b"Traceback" not in error
     assert headset.properties["debug.oculus.gpuLevel"] == "2"

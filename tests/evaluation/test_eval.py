@@ -41,7 +41,7 @@ from mua_research import recorded_systems
 from mua_research.system import Budget, Motion, Sizes, TrainingFrames
 
 SIZE = 176
-SAME = 2 / 255  # of an image of 0..1: the recording's half precision, and the order of equal depths
+SAME = 2 / 255  # in images of 0..1; allows for the recording's half precision and the order of equal depths
 PROJECT = Path(mua.__file__).parents[1]
 GOOD, BAD = "ours", "linear"  # what stands in for them
 LEAST_PSNR = 50.0  # dB, beside the CPU rasteriser, as tests/parity

@@ -31,7 +31,7 @@ def test_full_size_systems_are_taught_by_body_part(
     trained(name, few(smooth_frames), Budget(steps=1, batch=4))
     assert len(localities) == (1 if name == "pca-only" else 2)
     for locality in localities:
-        energy = locality.shares.diagonal(dim1=1, dim2=2).sum(1)  # of the directions, by part
+        energy = locality.shares.diagonal(dim1=1, dim2=2).sum(1)  # energy of the directions, by part
         assert (energy > 0).sum() > 1
         whole = locality.shares.sum(0)[:2, :2]  # the teacher moves two shapes: what lies beyond is rounding
         assert torch.allclose(whole, torch.eye(2), atol=1e-3)

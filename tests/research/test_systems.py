@@ -92,7 +92,7 @@ def test_the_rate_rises_then_falls_to_zero_over_the_budget() -> None:
     )
     assert [(each.stage, each.step, each.steps) for each in reported] == [("Adam", step, 50) for step in range(1, 51)]
     assert [each.loss for each in reported] == [-each for each in places[:-1]]
-    moves = np.diff(places)  # of Adam under a steady gradient: the rate
+    moves = np.diff(places)  # under a steady gradient, Adam moves by the rate
     done = np.arange(50) / 50
     np.testing.assert_allclose(moves, np.minimum(done / 0.1, 1) * 0.5 * (1 + np.cos(np.pi * done)), atol=1e-4)
 

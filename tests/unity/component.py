@@ -14,7 +14,7 @@ from mua.avatar.model import Layer
 KERNELS = ROOT / "ComputeShaders"
 WIDE = 1500  # a layer that needs more than one frame's chunk
 SECOND = 72  # frames of the program's player loop
-RATE = 24  # of the synthetic avatars
+RATE = 24  # frames a second of the synthetic avatars
 TURNED, TRANSLATED = 1e-6, 1e-5  # float32 of a few transforms on top of each other
 Reports = dict[str, list[str]]
 Story = Callable[..., Reports]

@@ -26,7 +26,7 @@ class CSharp:
         sources: Sequence[Path],  # files, or folders of which all .cs files are meant
         *,
         library: bool = False,
-        name: str = "",  # of the assembly; the last source's where there is none
+        name: str = "",  # the assembly's; the last source's where there is none
         references: Sequence[Path] = (),
         defines: Sequence[str] = (),
     ) -> Path:

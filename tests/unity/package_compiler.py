@@ -89,7 +89,7 @@ class Compiler:
         packages: bool,
         without: Collection[str] = (),
         engine: str = OLDEST,
-        symbols: Collection[str] = (),  # of the project
+        symbols: Collection[str] = (),  # what the project defines
     ) -> None:
         self._csharp, self._platform, self._packages, self._without = csharp, platform, packages, without
         self._engine = (*engine_symbols(engine), *symbols)

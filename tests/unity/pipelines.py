@@ -23,7 +23,7 @@ from mua.avatar.decode import decode_clip_frame
 
 SPLAT, SURFACE = "Hidden/MUA/Splat", "Hidden/MUA/Surface"
 WINDOW = (640, 480)  # pixels of the stand-ins' cameras
-EYE = (256, 192)  # of a headset's textures
+EYE = (256, 192)  # pixels of a headset's textures
 MOVED = 1  # the clip's frame in the recording's frame "moved"
 DECODED = FRAME_ORDER[: FRAME_ORDER.index("SplatProject")]
 SORTED = FRAME_ORDER[len(DECODED) :]
@@ -40,7 +40,7 @@ class Mode:
     passes: int  # over a camera
     eyes: int  # that a pass is given
     instances: int  # that the device writes for an indirect draw
-    multiplier: int  # of instances of direct draws, by the engine
+    multiplier: int  # the engine multiplies the instances of direct draws by this
 
     @property
     def screen(self) -> tuple[int, int]:

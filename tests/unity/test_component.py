@@ -136,7 +136,7 @@ def test_an_avatar_stands_where_its_parents_carry_it(story: Story) -> None:
 
 
 def test_an_avatar_casts_no_shadow_before_it_has_a_shape(story: Story) -> None:
-    assert story("IsNotDrawnYet", "first")["shadows"] == ["Ready 0", "Ready 2"]  # of three frames
+    assert story("IsNotDrawnYet", "first")["shadows"] == ["Ready 0", "Ready 2"]  # after two and after three frames
 
 
 def test_a_camera_draws_the_avatars_of_its_layers_alone(story: Story) -> None:

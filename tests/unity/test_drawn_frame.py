@@ -341,7 +341,8 @@ def test_a_linear_project_is_given_light(painter: Painter, mono: Scene, brightne
     expected[..., :3] *= light.max()
     found = painter.unity(drawn, space=())
     covered, channels = expected[..., 3] > 0, slice(3) if brightness < 1 else slice(4)
-    bound = 2.0**-9 * expected[covered][..., channels].max()  # of the expected colours' half floats
+    # Half a step of the half floats that the expected colours are stored in.
+    bound = 2.0**-9 * expected[covered][..., channels].max()
     assert np.abs(found - expected)[covered][..., channels].max() < bound
     with pytest.raises(AssertionError):
         agree(found, painter.player(mono)[0])

@@ -225,7 +225,8 @@ def test_a_component_is_scrubbed_in_its_inspector(story: Story, tmp_path: Path) 
     assert reported["clip"] == [["1", "True"]]
     assert scrubbed == f"popup nod of wave, nod; button Play; slider 0 of 0 to {last}"
     assert again == scrubbed.replace("slider 0", "slider 3")
-    assert reported["asked"] == [["1", "1"]] * 2  # of the editor that does not play: a frame and its picture, once
+    # An editor that does not play is asked once for a frame and its picture.
+    assert reported["asked"] == [["1", "1"]] * 2
     assert reported["frame"] == [["3"]]
     assert reported["playing"] == [["False"]]
     outside = 100 * outside_of_training(path, 3)

@@ -40,7 +40,7 @@ from mua.player.draw import SortedSplats, SplatRenderer, draw_image, image_forma
 from mua.rig.bounds import root_positions
 
 POSES = 12
-VISIBLE_WORD = 4  # of `arguments`
+VISIBLE_WORD = 4  # its place in `arguments`
 PLACES = (  # Unity's position, then rotation (x, y, z, w), then size
     (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0),
     (0.35, 0.1, -0.2, 0.1, 0.5, -0.1, 0.85446, 1.7),
@@ -54,9 +54,9 @@ class Shot:
 
     label: str
     seconds: tuple[float, ...]
-    frames: tuple[int, ...]  # of the clip, that these seconds mean
+    frames: tuple[int, ...]  # the frames of the clip that these seconds mean
     eyes: int
-    levels: tuple[int, ...] = (0, 0, 0)  # of detail
+    levels: tuple[int, ...] = (0, 0, 0)  # levels of detail
 
 
 FIRST = Shot("first", (0.0, 0.0, 0.0), (0, 0, 0), 1)

@@ -25,7 +25,7 @@ KERNELS = ROOT / "ComputeShaders"
 RUN = "0123abcd"
 SELF_TEST = ("-muaSelfTest", "-muaRun", RUN)
 CASES = len(read_golden())
-SECONDS, RATE = 3, 72  # of a bench, and frames a second of the program's player loop
+SECONDS, RATE = 3, 72  # a bench's length, and frames a second of the program's player loop
 BENCH = ("-muaBench", "first", "-muaSeconds", str(SECONDS), "-muaRun", RUN)
 VRAPI = "I/VrApi (1): FPS=72/72,Stale=0,App=4.5ms"
 CAUGHT = {  # by kernel, a fault that its golden cases show

@@ -25,7 +25,7 @@ SHADOW = 3  # pass
 class Shown:
     """What the displayed frames of one playing show."""
 
-    sets: int  # of channels
+    sets: int  # sets of channels
     dispatches: list[int]
     kept: list[tuple[Array, Array]]  # mesh and channels
     outside: list[str]  # how far outside of training what is shown is

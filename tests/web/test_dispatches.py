@@ -28,7 +28,7 @@ from mua.rig.bounds import root_positions
 __all__ = ["pytestmark"]  # skips where Node is missing
 
 HERE = Path(__file__).parent
-ROUNDING = 1e-5  # of poses in single precision, relative to a figure of a metre
+ROUNDING = 1e-5  # rounding of poses in single precision, relative to a figure of a metre
 
 
 class Noted(Commands):

@@ -37,7 +37,7 @@ class Breaking:
     asked: list[str | None]  # the range of each request
     answers: list[Answer]  # to the requests after the first
     first: list[Answer]  # to the first one, where it is not the beginning of the file
-    arrived: Event  # of what was sent before the connection breaks
+    arrived: Event  # set when what was sent before the connection breaks has arrived
 
 
 @pytest.fixture(scope="module")

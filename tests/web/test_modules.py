@@ -34,15 +34,15 @@ from mua.rig.bounds import frame_boxes
 
 HERE = Path(__file__).parent
 GOLDEN = HERE.parent / "golden"
-EXACT = 1e-12  # of float64 sums of some dozen terms below 10
-ROUNDED = 2.0**-23 * 8  # of a float32 below 8
+EXACT = 1e-12  # rounding of float64 sums of some dozen terms below 10
+ROUNDED = 2.0**-23 * 8  # rounding of a float32 below 8
 FRAMES = [0, 1, 3, 5]
 MUTANTS = 400
 SECONDS = 600  # a reader that hangs; so many files take some seconds
 CUT = 97  # so many bytes apart a file is cut off
 
 TSC = HERE / "node_modules" / ".bin" / "tsc"
-OLDEST = (20, 12)  # of Node, that unpacks what has no zlib header
+OLDEST = (20, 12)  # the oldest Node that unpacks what has no zlib header
 
 
 def lacking() -> bool:
