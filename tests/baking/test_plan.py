@@ -20,14 +20,15 @@ def frames_of(one: Clip) -> list[int]:
 
 
 def test_the_last_fifth_of_each_clip_is_held_out_behind_two_seconds_of_run_up() -> None:
-    training, held = split([clip("walk", 100, rate=12.0), clip("nod", 9), clip("turn", 10)], [])
-    assert [len(one) for one in training] == [80, 9, 8]
+    training, held = split([clip("walk", 100, rate=12.0), clip("nod", 9), clip("turn", 10), clip("jump", 50)], [])
+    assert [len(one) for one in training] == [80, 9, 8, 40]
     assert [(one.clip.name, frames_of(one.clip)) for one in held] == [
         ("walk (end)", list(range(80, 100))),
         ("turn (end)", [8, 9]),
+        ("jump (end)", list(range(40, 50))),
     ]
     runs = [frames_of(one.run_up) for one in plan([], held, frames=8) if one.run_up is not None]
-    assert runs == [list(range(56, 80)), list(range(8))]
+    assert runs == [list(range(56, 80)), list(range(8)), list(range(40))]
 
 
 def test_a_clip_whose_end_another_is_called_after_stays_whole() -> None:
