@@ -144,3 +144,14 @@ def test_no_figure_of_the_table_is_cut(width: int) -> None:
     for figure in ("99.0 %", "96.0 %", "91.0 %"):
         assert figure in shown
     assert "[end]" in shown.replace("\n", "") or width == 80
+
+
+def test_an_end_that_follows_another_stages_line_is_named() -> None:
+    file = io.StringIO()
+    with Display(Console(file=file)) as shown:
+        for stage, done in (("geometry", 0), ("appearance", 2), ("geometry", 2)):
+            shown.stage(stage)
+            shown.step(done, 2)
+        shown.stage("avatar")
+    words = [line.strip().split(" ")[0] for line in file.getvalue().splitlines()]
+    assert words == ["geometry", "appearance", "appearance:", "geometry:", "avatar", "0.0"]

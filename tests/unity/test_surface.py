@@ -42,13 +42,13 @@ from mua.player.surface import surface_mesh
 
 SCREEN = (160, 200)
 GAMMA = ("UNITY_COLORSPACE_GAMMA",)
-FRAME = 3  # of a clip of 24 Hz
+FRAME = 3  # a frame of the clip at 24 Hz
 PLACE = (0.35, 0.1, -0.2, 0.1, 0.5, -0.1, 0.85446, 0.8)  # Unity's position, then rotation (x, y, z, w), then size
 PASSES = ("Geometry", "Template", "Skeleton", "ShadowCaster")
 VIEWS = PASSES[:3]
 MAP = 512  # pixels along a shadow map
 SUBPIXELS = 256  # to which the software device rounds places, along a pixel: its subPixelPrecisionBits are 8
-STEEPEST = 2.3  # of light over sRGB, near white
+STEEPEST = 2.3  # the slope of linear light over sRGB near white
 METRES = 4.0  # that it spans
 
 
@@ -237,7 +237,7 @@ def test_a_surface_yields_a_centimetre_to_what_lies_on_it(painter: Painter) -> N
     place, focal = np.array([columns[facet], rows[facet]]) + 0.5, np.diagonal(camera.projection)[:2]
     ray = np.append(((2 * place / SCREEN - 1) * [1, -1] + camera.projection[:2, 2]) / focal, -1)  # a metre deep
     normal = np.cross(*(corners[facet, 1:] - corners[facet, 0]))
-    depth = middles[facet] @ normal / (ray @ normal)  # of the pixel's middle on the facet
+    depth = middles[facet] @ normal / (ray @ normal)  # where the ray through the pixel's middle meets the facet
     seen = []
     for behind in (0.005, 0.015):
         image = painter.unity("Template", plane=depth_at(camera, depth + behind))
