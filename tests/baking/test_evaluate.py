@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mua.baking.evaluate import Errors, Picture
+from mua.baking.evaluate import Errors, Picture, held_out_errors
 from mua.channels import ATTRIBUTES, SH_C0
 from mua.pose.clip import Clip
 from mua.recording import WholeFrame
@@ -39,3 +39,11 @@ def errors(attribute: str, values: list[float]) -> Errors:
 )
 def test_an_error_is_read_in_the_unit_of_its_attribute(attribute: str, values: list[float], read: float) -> None:
     assert errors(attribute, values).rms(attribute, "student") == pytest.approx(read, rel=0.01)
+
+
+def test_groups_together_have_the_errors_of_all_their_frames() -> None:
+    groups = {name: errors("opacity", [value]) for name, value in (("training", 9), ("walk", 3), ("turn", 4))}
+    held = held_out_errors(groups)
+    assert held is not None
+    assert (held.frames, held.rms("opacity", "student")) == (2, pytest.approx(np.sqrt((3**2 + 4**2) / 2)))
+    assert held_out_errors({"training": groups["training"]}) is None
