@@ -3,8 +3,10 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { beforeEach, test } from "node:test";
+import { framing } from "../../../python/mua/web/camera.js";
 import { Engine } from "../../../python/mua/web/engine.js";
 import { read } from "../../../python/mua/web/format/read.js";
+import { boxAround } from "../../../python/mua/web/placement.js";
 import { Renderer } from "../../../python/mua/web/renderer.js";
 
 const content = readFileSync(new URL("../../golden/synthetic.muaavatar", import.meta.url));
@@ -162,6 +164,55 @@ test("the whole of an avatar stands on its own ground, not on that of the part b
   const before = engine.posed()[0].ground;
   await engine.put(avatar, part, true);
   assert.ok(Math.abs(engine.posed()[0].ground - before - 1) < 1e-5);
+});
+
+test("an avatar that is framed while the camera follows stays in the middle as it goes on", async () => {
+  const engine = await begun(avatar);
+  engine.follow = true;
+  engine.time = 2.01 / avatar.encoding.rate;
+  engine.frameAll();
+  const middle = () => {
+    const box = boxAround(engine.entries, engine.playback);
+    return [0, 1, 2].map((axis) => Math.abs((box[axis] + box[axis + 3]) / 2 - engine.look.camera.target[axis]));
+  };
+  assert.ok(Math.max(...middle()) < 1e-5);
+  engine.time = 0;
+  assert.ok(Math.max(...middle().filter((_, axis) => axis !== 1)) < 1e-5);
+});
+
+test("in stereo an avatar is framed for one eye, which has half of the width", async () => {
+  const engine = await begun(avatar);
+  engine.canvas.height = 300;
+  const box = boxAround(engine.entries, engine.playback);
+  const found = [];
+  for (const [stereo, screen] of [
+    [false, [80, 300]],
+    [true, [40, 300]],
+  ]) {
+    engine.stereo = stereo;
+    engine.frameAll();
+    assert.equal(engine.camera.distance, framing(box, engine.camera, screen).distance);
+    found.push(engine.camera.distance);
+  }
+  assert.ok(found[1] > found[0]);
+});
+
+test("only those that were chosen are framed", async () => {
+  const engine = await begun(avatar, avatar);
+  engine.avatars[1].place = [50, 0, 0];
+  engine.frameAll([engine.avatars[1]]);
+  const [first, second] = engine.entries.map((entry) => boxAround([entry], engine.playback));
+  assert.ok(Math.abs(engine.camera.target[0] - (second[0] + second[3]) / 2) < 1e-5);
+  engine.frameAll();
+  assert.ok(Math.abs(engine.camera.target[0] - (first[0] + second[3]) / 2) < 1e-5);
+});
+
+test("a device that is lost ends the headset's session", async () => {
+  const engine = await begun(avatar);
+  let left = 0;
+  engine.room.headset = { leave: () => (left += 1) };
+  await engine.recover(10_000);
+  assert.equal(left, 1);
 });
 
 test("a picture that cannot be drawn stops the loop and is reported", async () => {
