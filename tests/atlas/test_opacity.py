@@ -18,8 +18,8 @@ from mua.texture.albedo import sample_albedo
 
 WHOLE = uv_map(1, 1, at=(0, 0))
 RED, GREEN = (200, 30, 20), (0, 255, 0)
-ROUNDED = 1  # of 255
-RADIUS = 0.3  # of a red disc in a clear green image, of the image's side
+ROUNDED = 1  # in 255ths
+RADIUS = 0.3  # radius of a red disc in a clear green image; the image's side is 1
 BY_PIXELS = 0.03  # relative: the area of a disc counted in texels whose edges are smooth
 
 

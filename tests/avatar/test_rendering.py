@@ -56,7 +56,8 @@ def test_a_sphere_covers_its_outline_and_nothing_more() -> None:
     distance = np.linalg.norm(camera.position)
     slope = np.tan(np.arcsin(0.4 / distance)) * camera.projection[1, 1] * 65 / 2  # radius of the tangent cone, pixels
     away = np.hypot(row - 32.5, column - 32.5) - slope
-    reach = 4 * frame.scales.max() / distance * camera.projection[1, 1] * 65 / 2 + 1  # of a quad beyond its centre
+    # How far a quad reaches beyond its centre.
+    reach = 4 * frame.scales.max() / distance * camera.projection[1, 1] * 65 / 2 + 1
     assert np.all(alpha[away < -2] > 0.95)
     assert np.all(alpha[away > reach] == 0)
 

@@ -16,7 +16,7 @@ import torch
 from captures import FRAMES, make_capture
 from commands import Commands, Ended
 from PIL import Image
-from taught import FEW
+from small_teachers import FEW
 
 import mua
 from mua.baking import teacher_stages

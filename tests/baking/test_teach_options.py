@@ -15,8 +15,8 @@ import torch
 from captures import FRAMES, make_capture
 from commands import Commands
 from PIL import Image
-from taught import FEW, material, teacher
-from taught import SETTINGS as SMALL
+from small_teachers import FEW, material, teacher
+from small_teachers import SETTINGS as SMALL
 from torch import Tensor
 
 import mua

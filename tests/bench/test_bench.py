@@ -169,7 +169,7 @@ def test_measures_a_setting_without_a_file() -> None:
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "sentence"),
     [
         ((), "expected one of the two"),
         (("a.muaavatar", "--preset", "tiny"), "expected one of the two"),
@@ -182,8 +182,8 @@ def test_measures_a_setting_without_a_file() -> None:
         (("--preset", "tiny", "--model", "quest3", "--counts"), "--counts and --model are given"),
     ],
 )
-def test_refuses_in_one_sentence(arguments: tuple[str, ...], said: str) -> None:
-    assert said in process("bench", *arguments).sentence
+def test_refuses_in_one_sentence(arguments: tuple[str, ...], sentence: str) -> None:
+    assert sentence in process("bench", *arguments).sentence
 
 
 def test_refuses_an_avatar_without_clips(tmp_path: Path) -> None:

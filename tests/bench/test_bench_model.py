@@ -99,10 +99,10 @@ def test_every_device_names_its_sources(device: ModelDevice) -> None:
 
 
 def test_an_unknown_device_is_refused_with_the_known_ones(command: Commands) -> None:
-    said = "--model is 'quest9'; expected one of quest3, adreno-x2, rtx3090"
-    with pytest.raises(InputError, match=said):
+    sentence = "--model is 'quest9'; expected one of quest3, adreno-x2, rtx3090"
+    with pytest.raises(InputError, match=sentence):
         model_device("quest9")
-    assert said in command("bench", "--preset", "tiny", "--model", "quest9").sentence
+    assert sentence in command("bench", "--preset", "tiny", "--model", "quest9").sentence
 
 
 SHADER = """
@@ -140,16 +140,16 @@ def test_prints_the_model_beside_what_is_measured(
 
 
 @pytest.mark.parametrize(
-    ("name", "said"),
+    ("name", "sourced"),
     [
         ("quest3", {"bandwidth": "64 GB/s", "clock": "599 MHz"}),
         ("adreno-x2", {"bandwidth": "228 GB/s", "clock": "1.85 GHz", "peak": "7.6 TFLOPS"}),
         ("rtx3090", {"bandwidth": "936 GB/s", "clock": "1.695 GHz", "peak": "35.6 TFLOPS"}),
     ],
 )
-def test_figures_of_a_device_are_those_of_its_sources(name: str, said: dict[str, str]) -> None:
+def test_figures_of_a_device_are_those_of_its_sources(name: str, sourced: dict[str, str]) -> None:
     sources = " ".join(DEVICES[name].sources)
-    for figure, words in said.items():
+    for figure, words in sourced.items():
         assert words in sources
         number, unit = words.split()
         assert getattr(DEVICES[name], figure) == pytest.approx(float(number) * (1e-3 if unit == "MHz" else 1))

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from commands import Commands
-from skeletool_files import REST, Said, sway
+from skeletool_files import REST, CharacterFiles, sway
 from subjects import FIRST, FRAMES, write_subject
 
 from mua.capture import open_capture
@@ -51,12 +51,12 @@ def test_the_folder_brings_template_poses_and_surfaces(capture: Path) -> None:
 def test_the_template_is_where_the_files_matrices_have_it(capture: Path) -> None:
     found = open_capture(capture)
     character = found.template
-    said = Said.of(*(character.with_suffix(end) for end in (".skeleton", ".obj", ".skin")))
+    files = CharacterFiles.of(*(character.with_suffix(end) for end in (".skeleton", ".obj", ".skin")))
     truth = sway(FRAMES["training"] + 9)[FIRST["training"] :]
     posed = posed_template(found.surfaces, found.motion("training"))
     assert len(posed) == found.clip("training").frames > 1
     for frame, vertices in enumerate(posed):
-        np.testing.assert_allclose(vertices[found.surfaces.faces], said.skinned(REST, truth[frame]), atol=CORNER_BOUND)
+        np.testing.assert_allclose(vertices[found.surfaces.faces], files.skinned(REST, truth[frame]), atol=CORNER_BOUND)
 
 
 def test_outlines_lie_on_the_masks(capture: Path, command: Commands) -> None:

@@ -8,8 +8,8 @@ import pytest
 from avatarrex_files import WORLDS, write_source
 from commands import Commands
 from PIL import Image
+from small_teachers import FEW
 from subjects import FOCAL, SIDE, picture, write_subject
-from taught import FEW
 
 import mua
 from mua.arrays import Array

@@ -19,30 +19,11 @@ from gltf_files import (
     posed,
     primitive,
     read,
-    skeleton,
 )
 from scipy.spatial import cKDTree
 
 from mua.characters.read import read_surfaces
 from mua.errors import InputError
-
-
-def test_folds_unequal_scales_of_joints_into_the_mesh(tmp_path: Path) -> None:
-    glb = body()
-    glb.json["skins"], glb.json["nodes"] = [], []
-    skeleton(glb, scale=(0.01, 0.02, 0.04))
-    surfaces = read(glb, tmp_path)
-    assert_is_column(surfaces)
-    np.testing.assert_allclose(surfaces.skeleton.bind_translations[:, 1], [0, 0.5, 0.5], atol=FLOAT_BOUND)
-
-
-def test_folds_a_scale_that_the_rest_pose_adds(tmp_path: Path) -> None:
-    glb = body()
-    glb.json["nodes"][2]["scale"] = [2, 1, 1]  # the head is made twice as wide after binding
-    surfaces = read(glb, tmp_path)
-    head = surfaces.skin_indices[:, 0] == 2
-    assert np.ptp(surfaces.vertices[head, 0]) == pytest.approx(0.8, abs=1e-6)
-    assert np.ptp(surfaces.vertices[~head, 0]) == pytest.approx(0.4, abs=1e-6)
 
 
 def test_mesh_on_a_joint_follows_it_rigidly(tmp_path: Path) -> None:
@@ -101,7 +82,7 @@ def test_lumberjack_stands_upright_and_keeps_its_clips(shared_data: Any) -> None
     assert [(clip.name, len(clip)) for clip in surfaces.clips] == [("Walk", 31), ("Poses", 188)]
     assert surfaces.notes[0] == "Clips of a single pose are left out: A-pose."
     skeleton = surfaces.skeleton
-    assert len(skeleton.names) == 33  # of 53: the others carry no weights and have no bind pose
+    assert len(skeleton.names) == 33  # the other 20 carry no weights and have no bind pose
     assert skeleton.names[skeleton.root] == "DEF-spine_02"
     parents = {n: skeleton.names[p] for n, p in zip(skeleton.names, skeleton.parents, strict=True) if p >= 0}
     assert parents["DEF-thigh.L_023"] == parents["DEF-thigh.R_015"] == "DEF-spine_02"

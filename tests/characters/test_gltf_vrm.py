@@ -136,9 +136,9 @@ def test_bone_that_old_exporters_mark_as_missing_is_skipped(tmp_path: Path) -> N
 
 def test_humanoid_bones_have_the_roles_that_joint_names_are_given() -> None:
     """On both sides alike."""
-    said = {"hips": "hips", "upperChest": "spine", "leftToes": "left toe", "leftFoot": "left foot"}
-    said |= {"rightLowerLeg": "right shin", "leftLittleDistal": "left pinky", "rightThumbProximal": "right thumb"}
-    said |= {"leftShoulder": "left shoulder", "rightUpperArm": "right upper_arm", "rightLowerArm": "right forearm"}
-    assert {bone: ROLES[bone] for bone in said} == said
+    expected = {"hips": "hips", "upperChest": "spine", "leftToes": "left toe", "leftFoot": "left foot"}
+    expected |= {"rightLowerLeg": "right shin", "leftLittleDistal": "left pinky", "rightThumbProximal": "right thumb"}
+    expected |= {"leftShoulder": "left shoulder", "rightUpperArm": "right upper_arm", "rightLowerArm": "right forearm"}
+    assert {bone: ROLES[bone] for bone in expected} == expected
     known = {role for role in ROLES.values() if role.partition(" ")[0] in ("left", "right")}
     assert {f"right {role.partition(' ')[2]}" for role in known} == {role for role in known if role[0] == "r"}

@@ -7,7 +7,7 @@ import pytest
 from gltf_files import posed
 from PIL import Image
 from shared_data import SharedData
-from skeletool_files import DOFS, Said, motion_text, sway, write_character
+from skeletool_files import DOFS, CharacterFiles, motion_text, sway, write_character
 
 from mua.characters.read import read_character, read_surfaces
 from mua.errors import InputError
@@ -21,18 +21,18 @@ CORNER_BOUND = 5e-6
 JOINT_BOUND = 30 * 12 * 10 * np.finfo(float).eps
 
 
-def assert_follows(character: Path, motion: Path, said: Said, rest: np.ndarray, dofs: np.ndarray) -> None:
+def assert_follows(character: Path, motion: Path, content: CharacterFiles, rest: np.ndarray, dofs: np.ndarray) -> None:
     """A motion's joints and the surface that hangs on them are where the files' own matrices have them."""
     surfaces = read_surfaces(character)
     (loaded,) = load_motions(motion, surfaces.skeleton, mapping=None, rate=25)
     clip, skeleton = loaded.clip, surfaces.skeleton
     _, placed = skeleton.world(clip.rotations, clip.translations)
-    order = [said.bones.index(name) for name in skeleton.names]
+    order = [content.bones.index(name) for name in skeleton.names]
     for frame in np.linspace(0, len(dofs) - 1, FRAMES).astype(int):
-        matrices = said.bone_matrices(dofs[frame])[order]
+        matrices = content.bone_matrices(dofs[frame])[order]
         np.testing.assert_allclose(placed[frame], matrices[:, :3, 3] / 1000, atol=JOINT_BOUND)
         corners = posed(surfaces, clip.rotations[frame], clip.translations[frame])[surfaces.faces]
-        np.testing.assert_allclose(corners, said.skinned(rest, dofs[frame]), atol=CORNER_BOUND)
+        np.testing.assert_allclose(corners, content.skinned(rest, dofs[frame]), atol=CORNER_BOUND)
 
 
 @pytest.fixture
@@ -40,8 +40,8 @@ def character(tmp_path: Path) -> Path:
     return write_character(tmp_path / "subject")
 
 
-def said_of(character: Path) -> Said:
-    return Said.of(*(character.with_suffix(end) for end in (".skeleton", ".obj", ".skin")))
+def read_files(character: Path) -> CharacterFiles:
+    return CharacterFiles.of(*(character.with_suffix(end) for end in (".skeleton", ".obj", ".skin")))
 
 
 def dofs_of(motion: Path) -> np.ndarray:
@@ -53,7 +53,7 @@ def test_joints_and_skin_follow_random_dofs_as_matrices_say(character: Path) -> 
     motion = character.parent / "poses" / "wild.motion"
     motion.parent.mkdir()
     motion.write_text(motion_text(dofs, first=3))
-    assert_follows(character, motion, said_of(character), dofs_of(character.with_suffix(".motion"))[0], dofs)
+    assert_follows(character, motion, read_files(character), dofs_of(character.with_suffix(".motion"))[0], dofs)
 
 
 def test_files_in_another_unit_become_a_person_and_a_path_in_metres(character: Path, tmp_path: Path) -> None:
@@ -75,7 +75,7 @@ def test_the_familys_own_sample_follows_its_matrices(shared_data: SharedData) ->
     files = [shared_data.path(f"ddc/ddc.{end}") for end in ("character", "skeleton", "obj", "skin", "motion")]
     motion = shared_data.path("ddc/poseAngles.motion")
     rest, dofs = dofs_of(files[4])[0], dofs_of(motion)
-    assert_follows(files[0], motion, Said.of(*files[1:4]), rest, dofs)
+    assert_follows(files[0], motion, CharacterFiles.of(*files[1:4]), rest, dofs)
 
 
 def test_the_sample_stands_as_tall_and_on_the_floor_as_published(shared_data: SharedData) -> None:

@@ -237,7 +237,8 @@ def test_a_texture_declared_linear_is_brought_to_srgb(tmp_path: Path, space: str
 
     shown = read_surfaces(edited(write_character(tmp_path / "man.usda"), declare)).materials[0].image[0, 0]
     stored = np.array(STORED[space]) / 255
-    light = scale * np.where(stored <= 0.04045, stored / 12.92, ((stored + 0.055) / 1.055) ** 2.4)  # of the display
+    # Light of the display.
+    light = scale * np.where(stored <= 0.04045, stored / 12.92, ((stored + 0.055) / 1.055) ** 2.4)
     seen = 255 * np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
     np.testing.assert_allclose(shown[:3], STORED[space] if scale == 1 else seen, atol=1)
     assert shown[3] == 128  # a share, whatever the colours are

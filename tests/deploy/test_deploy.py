@@ -69,13 +69,13 @@ def run_of(arguments: list[str]) -> str:
 
 
 def passing(arguments: list[str]) -> list[str]:
-    said = ("START 3", "PASS mlp_matmul/odd", "PASS splat_sort/empty", "PASS splat_sort/one", "PASS 3/3")
-    return [unity(f"MUA-SELFTEST {run_of(arguments)} {text}") for text in said]
+    lines = ("START 3", "PASS mlp_matmul/odd", "PASS splat_sort/empty", "PASS splat_sort/one", "PASS 3/3")
+    return [unity(f"MUA-SELFTEST {run_of(arguments)} {text}") for text in lines]
 
 
 def failing(arguments: list[str]) -> list[str]:
-    said = ("START 2", "FAIL mlp_matmul/odd: differs by 0.5 at 7: 1.0", "PASS splat_sort/one", "FAIL 1/2")
-    return [unity(f"MUA-SELFTEST {run_of(arguments)} {text}") for text in said]
+    lines = ("START 2", "FAIL mlp_matmul/odd: differs by 0.5 at 7: 1.0", "PASS splat_sort/one", "FAIL 1/2")
+    return [unity(f"MUA-SELFTEST {run_of(arguments)} {text}") for text in lines]
 
 
 def playing(arguments: list[str]) -> list[str]:
@@ -355,7 +355,7 @@ def test_bench_puts_the_headset_back_after_ctrl_c(monkeypatch: pytest.MonkeyPatc
             try:
                 _, error = deploying.communicate(timeout=30)
             finally:
-                deploying.kill()  # of no effect on one that ended
+                deploying.kill()  # has no effect on one that ended
     assert deploying.returncode != 0
     assert b"Traceback" not in error
     assert headset.properties["debug.oculus.gpuLevel"] == "2"

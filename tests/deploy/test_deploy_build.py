@@ -15,14 +15,14 @@ def test_writes_the_apk_into_the_project(tmp_path: Path) -> None:
     root = project(tmp_path)
     apk = build(editor(program), root)
     assert apk == root / "Build" / "mua-player.apk"
-    said = apk.with_suffix(".log").read_text()
+    log = apk.with_suffix(".log").read_text()
     for words in (
         "-batchmode",
         "-buildTarget Android",
         "-executeMethod Mua.Editor.Build.Quest",
         f"-projectPath {root}",
     ):
-        assert words in said
+        assert words in log
 
 
 def test_runs_again_where_unity_brought_packages(tmp_path: Path) -> None:

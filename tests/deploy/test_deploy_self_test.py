@@ -8,12 +8,12 @@ from mua.errors import InputError
 
 
 def test_collects_cases_up_to_the_result() -> None:
-    said = ["START 2", "PASS splat_sort/one", "FAIL dq_skinning/odd: 1.0: expected 2.0", "FAIL 1/2", "PASS later/on"]
-    assert collect(said) == [Case("splat_sort", "one", None), Case("dq_skinning", "odd", "1.0: expected 2.0")]
+    lines = ["START 2", "PASS splat_sort/one", "FAIL dq_skinning/odd: 1.0: expected 2.0", "FAIL 1/2", "PASS later/on"]
+    assert collect(lines) == [Case("splat_sort", "one", None), Case("dq_skinning", "odd", "1.0: expected 2.0")]
 
 
 @pytest.mark.parametrize(
-    "said",
+    "lines",
     [
         ["START 2", "PASS a/b", "PASS 2/2"],
         ["START 2", "PASS a/b", "PASS 1/1"],
@@ -21,9 +21,9 @@ def test_collects_cases_up_to_the_result() -> None:
         ["PASS a/b", "PASS 1/1"],
     ],
 )
-def test_notices_lost_lines(said: list[str]) -> None:
+def test_notices_lost_lines(lines: list[str]) -> None:
     with pytest.raises(InputError, match="lines were lost"):
-        collect(said)
+        collect(lines)
 
 
 @pytest.mark.parametrize("text", ["", "PASS", "PASS a", "FAIL a/b", "PASS a/b: well", "DONE", "START many"])

@@ -107,9 +107,9 @@ def test_commands_take_what_is_shown(
     assert SCRIPTS[f"mua-{name}"] == f"mua.cli.{name}:run"
     monkeypatch.setattr(typer.core.TyperCommand, "invoke", lambda *_: 0)  # arguments are parsed but nothing runs
     ended = command(name, *shlex.split(words))
-    said = " ".join(ended.err.split())
-    enough = ended.status == 0 or "Missing " in said or "requires an argument" in said
-    assert enough, f"{path}: mua-{name}{words}: {said}"
+    printed = " ".join(ended.err.split())
+    enough = ended.status == 0 or "Missing " in printed or "requires an argument" in printed
+    assert enough, f"{path}: mua-{name}{words}: {printed}"
 
 
 def test_a_lost_link_and_a_lost_anchor_are_found(tmp_path: Path) -> None:

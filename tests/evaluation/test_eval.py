@@ -41,7 +41,7 @@ from mua_research import recorded_systems
 from mua_research.system import Budget, Motion, Sizes, TrainingFrames
 
 SIZE = 176
-SAME = 2 / 255  # of an image of 0..1: the recording's half precision, and the order of equal depths
+SAME = 2 / 255  # in images of 0..1; allows for the recording's half precision and the order of equal depths
 PROJECT = Path(mua.__file__).parents[1]
 GOOD, BAD = "ours", "linear"  # what stands in for them
 LEAST_PSNR = 50.0  # dB, beside the CPU rasteriser, as tests/parity
@@ -153,12 +153,12 @@ def _root(frame: WholeFrame) -> Array:
 
 
 @pytest.mark.parametrize(
-    ("views", "size", "said"), [(2, 175, "--size 175"), (0, SIZE, "--views 0"), (17, SIZE, "--views 17")]
+    ("views", "size", "sentence"), [(2, 175, "--size 175"), (0, SIZE, "--views 0"), (17, SIZE, "--views 17")]
 )
 def test_refuses_too_few_and_too_many_views_and_pixels(
-    recording: Recording, tmp_path: Path, views: int, size: int, said: str
+    recording: Recording, tmp_path: Path, views: int, size: int, sentence: str
 ) -> None:
-    with pytest.raises(InputError, match=said):
+    with pytest.raises(InputError, match=sentence):
         command.evaluate(recording=recording.directory, views=views, size=size, output=tmp_path / "out")
     assert not (tmp_path / "out").exists()
 
@@ -195,8 +195,8 @@ def test_a_file_of_another_rig_is_refused(device: Device, recording: Recording, 
     texels = replace(rig.texels, texels=rig.texels.texels[::-1].copy())
     renamed = replace(rig.skeleton, names=("root", "middle", "head"))
     path = saved(tmp_path)
-    for other, said in ((replace(rig, texels=texels), "texels"), (replace(rig, skeleton=renamed), "joints")):
-        with pytest.raises(InputError, match=rf"played\.muaavatar: its {said} are not those of the recording"):
+    for other, part in ((replace(rig, texels=texels), "texels"), (replace(rig, skeleton=renamed), "joints")):
+        with pytest.raises(InputError, match=rf"played\.muaavatar: its {part} are not those of the recording"):
             avatar_entries(device, path, other, size=SIZE, played=False)
 
 
@@ -262,8 +262,8 @@ def test_the_command_writes_tables_plots_and_sheets(
         with Image.open(output / f"{name}.png") as image:
             assert np.asarray(image).std() > 5
 
-    told = json.loads((output / "results.json").read_text())
-    systems = {row["system"]: row for row in told["systems"]}
+    results = json.loads((output / "results.json").read_text())
+    systems = {row["system"]: row for row in results["systems"]}
     assert list(systems) == ["mean texture", "f32", "i8", GOOD, BAD]
     assert systems[BAD]["failure"] == "RuntimeError: no [place] left"
     assert systems[BAD]["mean"]["training"]["psnr"] is None
@@ -273,8 +273,8 @@ def test_the_command_writes_tables_plots_and_sheets(
         8_000_000,
         None,
     )
-    assert told["setting"]["frames"] == {"training": 1, "held out": 1}
-    assert told["setting"]["size"] == SIZE
+    assert results["setting"]["frames"] == {"training": 1, "held out": 1}
+    assert results["setting"]["size"] == SIZE
     assert [(p["clip"], p["frame"]) for p in systems["i8"]["pictures"]] == [("walk", 3), ("turn", 3)]
 
     rows = list(csv.DictReader((output / "results.csv").read_text().splitlines()))
@@ -294,10 +294,10 @@ class Weighed:
     network = "alex"
 
     def __init__(self, path: Path) -> None:
-        self._said = float(path.read_text())
+        self._score = float(path.read_text())
 
     def __call__(self, image: Tensor, truth: Tensor) -> float:
-        return self._said
+        return self._score
 
 
 def test_every_option_of_the_images_counts(
@@ -310,9 +310,9 @@ def test_every_option_of_the_images_counts(
         recording=recording.directory, avatars=[saved(tmp_path)], frames=2, views=3, size=SIZE, own_mesh=True,
         lpips_weights=tmp_path / "weights", output=tmp_path / "out",
     )  # fmt: skip
-    told = json.loads((tmp_path / "out" / "results.json").read_text())
-    assert [row["system"] for row in told["systems"]] == ["mean texture", "played", "played, own mesh"]
-    for row in told["systems"]:
+    results = json.loads((tmp_path / "out" / "results.json").read_text())
+    assert [row["system"] for row in results["systems"]] == ["mean texture", "played", "played, own mesh"]
+    for row in results["systems"]:
         assert [(one["clip"], one["view"]) for one in row["pictures"]] == [
             (name, view) for name in ("walk", "walk", "turn", "turn") for view in range(3)
         ]

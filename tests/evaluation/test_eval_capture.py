@@ -14,8 +14,8 @@ from commands import Commands
 from compared import SETTINGS as QUICK
 from empty_entries import nothing
 from PIL import Image
+from small_teachers import FEW
 from synthetic_avatar import synthetic_avatar
-from taught import FEW
 
 import mua
 from mua.asset.write import write
@@ -186,22 +186,22 @@ def test_the_command_trains_systems_at_several_sizes_and_once(
     output = tmp_path / "evaluation"
     ended = command("eval", *order, "-o", output)
     assert ended.status == 0, ended
-    told = json.loads((output / "results.json").read_text())
-    rows = {one["name"]: one for one in told["entries"]}
+    results = json.loads((output / "results.json").read_text())
+    rows = {one["name"]: one for one in results["entries"]}
     assert {"ours x0.5", "ours", "linear x0.5", "linear"} < set(rows)
-    (equal,) = (one for one in told["entries"] if one["system"] == "linear" and one["scale"] not in (0.5, 1))
+    (equal,) = (one for one in results["entries"] if one["system"] == "linear" and one["scale"] not in (0.5, 1))
     assert equal["parameters"] <= rows["ours"]["parameters"]
     assert equal["flops"] <= rows["ours"]["flops"]
     within = {name for name, one in rows.items() if one["system"] == "linear" and one["flops"] <= rows["ours"]["flops"]}
     assert {equal["name"], "linear"} <= within
-    assert {one["rival"] for one in told["standings"]} <= within
-    assert len(told["standings"]) == len(filmed.SPLITS)
+    assert {one["rival"] for one in results["standings"]} <= within
+    assert len(results["standings"]) == len(filmed.SPLITS)
     assert "learnt" not in rows["ours"]
     assert "on 3 frames of the teacher at 64 texels" in (output / "results.md").read_text()
     with Image.open(output / "curve.png") as plot:
         assert np.asarray(plot).std() > 5
     trained = {path.name: path.stat().st_mtime_ns for path in (output / "work").glob("system *.pt")}
-    assert len(trained) == len([one for one in told["entries"] if one["system"]])
+    assert len(trained) == len([one for one in results["entries"] if one["system"]])
     before = (output / "results.json").read_bytes()
     assert command("eval", *order, "-o", output).status == 0
     assert {path.name: path.stat().st_mtime_ns for path in (output / "work").glob("system *.pt")} == trained
@@ -268,12 +268,19 @@ def test_a_wrong_option_is_a_sentence(
     assert sentence in command("eval", capture, *options).sentence
 
 
-def test_a_recording_has_no_pictures_to_compare_a_teacher_with(written: Path, command: Commands) -> None:
-    assert "can only be compared with the images of a capture" in command("eval", written, "--teacher", "x").sentence
-
-
-def test_systems_of_a_recording_are_trained_on_it(written: Path, command: Commands) -> None:
-    assert "--train-on x: only applies to a comparison" in command("eval", written, "--train-on", "x").sentence
+@pytest.mark.parametrize(
+    ("option", "sentence"),
+    [
+        ("--teacher", "can only be compared with the images of a capture"),
+        ("--train-on", "--train-on x: only applies to a comparison"),
+        ("--images", "--images x: only applies to a comparison with"),
+        ("--scale", "--scale 2: only applies to a comparison with"),
+    ],
+)
+def test_options_of_a_capture_are_refused_for_a_recording(
+    written: Path, command: Commands, option: str, sentence: str
+) -> None:
+    assert sentence in command("eval", written, option, "2" if option == "--scale" else "x").sentence
 
 
 def test_a_recording_of_another_character_is_refused(
@@ -282,11 +289,3 @@ def test_a_recording_of_another_character_is_refused(
     given = ("--teacher", teacher, "--system", "ours", "--train-on", written, "-o", tmp_path)
     ended = command("eval", capture, *given)
     assert f"--train-on {written}: its joints are not those of the capture's template" in ended.sentence
-
-
-def test_images_are_those_of_a_capture(written: Path, command: Commands) -> None:
-    assert "--images x: only applies to a comparison with" in command("eval", written, "--images", "x").sentence
-
-
-def test_systems_of_a_recording_have_one_size(written: Path, command: Commands) -> None:
-    assert "--scale 2: only applies to a comparison with" in command("eval", written, "--scale", "2").sentence

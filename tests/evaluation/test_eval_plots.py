@@ -15,7 +15,7 @@ from mua.evaluation.scores import Result, Sample
 from mua.fidelity import strips
 
 CELL = plots.CELL
-DARK, BRIGHT = 16, 180  # of 255: the ends of the map's colours
+DARK, BRIGHT = 16, 180  # the ends of the map's colours, in 255ths
 SIDE = 240
 
 

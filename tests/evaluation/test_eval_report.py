@@ -44,7 +44,7 @@ def test_storage_is_held_against_the_widest_file_of_the_same_avatar() -> None:
     ]
 
 
-def told(rows: list[Result], setting: report.Setting) -> str:
+def table(rows: list[Result], setting: report.Setting) -> str:
     console = Console(file=io.StringIO(), width=80)
     console.print(report.tables(rows, setting))
     return console.file.getvalue()  # type: ignore[attr-defined]
@@ -77,24 +77,24 @@ FILE = row(Entry("a_file_with_a_name_of_more_than_forty_letters", truth, Cost(10
 
 
 def test_no_figure_is_cut_on_eighty_columns() -> None:
-    shown = told([MEAN, FILE], replace(SETTING, lpips="alex"))
+    shown = table([MEAN, FILE], replace(SETTING, lpips="alex"))
     assert "…" not in shown
     assert shown.count("48.12") == 4
     assert max(map(len, shown.splitlines())) <= 80
 
 
 def test_nothing_is_said_of_what_did_not_happen() -> None:
-    of_files = told([MEAN, FILE], replace(SETTING, frames={"training": 1, "held out": 0}))
+    of_files = table([MEAN, FILE], replace(SETTING, frames={"training": 1, "held out": 0}))
     for word in ("trained for", "own mesh", "held out", "│ LPIPS", "failed"):
         assert word not in of_files
     assert "FPS" in of_files
-    systems = told([MEAN, row(Entry("ours", truth, Cost(10, 10, 40)))], SETTING)
+    systems = table([MEAN, row(Entry("ours", truth, Cost(10, 10, 40)))], SETTING)
     assert "trained for 60 s" in systems
     assert "FPS" not in systems
 
 
 def test_what_holds_for_all_rows_is_said_once() -> None:
     failing = row(Entry("linear", None, failure="no [place] left"), failure="no [place] left")
-    shown = told([MEAN, FILE, failing], SETTING)
+    shown = table([MEAN, FILE, failing], SETTING)
     assert shown.count("no weights given") == 1
     assert shown.count("no [place] left") == 1

@@ -63,7 +63,7 @@ def ends(tree: Path, tests: Iterable[str]) -> int:
     command = [sys.executable, "-m", "pytest", "-c", "pyproject.toml", "-x", "-n0", "-p", "no:randomly", *tests]
     environment = {**os.environ, "PYTHONPATH": str(tree / "python")}
     environment.pop("PYTEST_XDIST_WORKER", None)
-    command += ["-p", "no:cacheprovider"]
+    command += ["-p", "no:cacheprovider", "-m", "not long and not gallery"]
     ran = subprocess.run(command, cwd=tree, env=environment, capture_output=True, check=False, timeout=SECONDS)
     return ran.returncode
 

@@ -220,7 +220,8 @@ def test_source_and_splats_are_seen_from_the_same_named_side_of_a_turned_figure(
     assert fidelity is not None
     assert [len(pose.shots) for pose in fidelity.poses] == [4, 1, 1, 1]
     assert fidelity.iou > 0.96
-    sides = {"front": 0, "left": 90, "back": 180, "front, right": -40, "back, left": 140}  # of the camera, to the left
+    # Degrees that the camera stands to the left.
+    sides = {"front": 0, "left": 90, "back": 180, "front, right": -40, "back, left": 140}
     for shot in (shot for pose in fidelity.poses for shot in pose.shots):
         angle = np.radians(sides[shot.view])
         fin_is_right = np.array([np.cos(angle), -np.sin(angle)]) @ FIN > 0

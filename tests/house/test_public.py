@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from commands import python
 from synthetic_avatar import synthetic_avatar
 
 import mua
@@ -152,7 +151,10 @@ WRONG_OPTIONS: dict[str, tuple[dict[str, Any], str]] = {
     "output": ({"output": "a.glb"}, r"-o a\.glb: expected a name that ends in \.muaavatar"),
     "preset": ({"preset": "huge"}, "preset: 'huge' is unknown, expected one of tiny"),
     "frames": ({"frames": "many"}, "frames is 'many'; expected a whole number"),
-    "texels": ({"texels": 100}, "--texels 100: expected a multiple of 16"),
+    "no frames": ({"frames": 0}, "--frames 0: expected at least 1"),
+    "texels": ({"texels": 100}, "--texels 100: expected a multiple of 16 from 32 on"),
+    "few texels": ({"texels": 16}, "--texels 16: expected a multiple of 16 from 32 on"),
+    "half a texel": ({"texels": 64.5}, r"texels is 64\.5 \(float\); expected a whole number"),
     "held-out clip": ({"hold_out": [1]}, r"hold_out is \[1\] \(list\); expected a name or a list of names"),
     "clips": ({"clips": 0.5}, r"clips is 0\.5 \(float\); expected a name or a list of names"),
     "mapping": ({"mapping": 3}, r"mapping is 3 \(int\); expected a path"),
@@ -293,29 +295,3 @@ def _is_record_of_arrays(node: ast.ClassDef) -> bool:
     fields = [ast.unparse(line.annotation) for line in node.body if isinstance(line, ast.AnnAssign)]
     holds = any(kind in field for field in fields for kind in ("Array", "Tensor", "ndarray"))
     return holds and any("dataclass" in ast.unparse(decorator) for decorator in node.decorator_list)
-
-
-ALONE = """
-ALLOWED = {*sys.stdlib_module_names, "mua", "numpy", "flatbuffers", "PIL"}
-
-class Absent:
-    def find_spec(self, name, path=None, target=None):
-        if name.partition(".")[0] not in ALLOWED:
-            raise ModuleNotFoundError(f"No module named {name!r}", name=name)
-
-sys.meta_path.insert(0, Absent())
-import mua
-loaded = sorted({"numpy", "flatbuffers", "PIL"} & set(sys.modules))
-avatar = mua.load(sys.argv[1])
-mua.save(sys.argv[1], avatar, storage="i8")
-mua.render(avatar.decode(avatar.clips[0].name, 1), size=(16, 16)).save(sys.argv[2])
-print(loaded)
-"""
-
-
-def test_reading_decoding_and_a_picture_need_three_packages_alone(tmp_path: Path) -> None:
-    file, picture = tmp_path / "a.muaavatar", tmp_path / "a.png"
-    mua.save(file, AVATAR)
-    ended = python(ALONE, file, picture)
-    assert (ended.status, ended.out.strip()) == (0, "[]"), f"importing mua loads what is not asked for\n{ended.err}"
-    assert picture.is_file()

@@ -168,7 +168,7 @@ def test_random_poses_keep_limbs_out_of_the_body() -> None:
 def test_random_poses_are_reached_slowly_and_as_fast_as_a_kick() -> None:
     clip = mixed("any", np.random.default_rng(0))
     turns = 2 * np.arccos(np.clip(abs(np.sum(clip.rotations[1:] * clip.rotations[:-1], axis=-1)), 0, 1))
-    fastest = np.degrees(turns).max(axis=1)  # of all joints, by frame
+    fastest = np.degrees(turns).max(axis=1)  # the fastest joint's, by frame
     assert np.quantile(fastest, 0.1) < 8
     assert 30 < fastest.max() < 70
 

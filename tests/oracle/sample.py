@@ -12,7 +12,7 @@ from oracle import level, motion, splats, surface, texture
 from oracle.file import Array, Tree, load
 
 SAMPLE = Path(__file__).resolve().parents[1] / "golden" / "packed.muaavatar"
-FRAME = 3  # of the first clip at the rate of the encoding
+FRAME = 3  # a frame of the first clip at the rate of the encoding
 CAMERA = np.array([0.5, 1.0, 3.0])  # looks along -Z
 NEAR = 0.1
 

@@ -208,11 +208,11 @@ def test_the_decoder_shares_no_code_with_mua() -> None:
 
 def test_every_step_of_the_decoder_is_on_the_page() -> None:
     numbers = set(re.findall(r"^\*\*(\d\.\d)", PAGE.read_text(), re.MULTILINE))
-    said = set(re.findall(r"(?<![\d.])([1-9]\.[1-9])(?![\de])", "".join(SOURCES)))
-    assert said <= numbers
+    quoted = set(re.findall(r"(?<![\d.])([1-9]\.[1-9])(?![\de])", "".join(SOURCES)))
+    assert quoted <= numbers
     players = {"1.4", "7.1", "8.4", "9.5"}  # what is drawn of it, and how
     reading = {number for number in numbers if number.startswith("1") and len(number) > 3}
-    assert numbers - said - reading <= players
+    assert numbers - quoted - reading <= players
 
 
 CHARACTERS = {"White_F_3_Casual": ("motion/cmu/01_01.bvh",), "Fox": (), "lumberjack": ()}

@@ -20,7 +20,7 @@ from mua.player.draw import IMAGE_FORMAT, SortedSplats, SplatRenderer, draw_imag
 from mua.player.splats import SplatFrame
 
 EYE_DISTANCE = 0.063  # metres
-EYE_SHIFT = 0.04  # of the projection's axis, towards the nose: eyes of a headset look past their screen's middle
+EYE_SHIFT = 0.04  # the projection's axis moves towards the nose, as a headset's eyes look past their screen's middle
 
 
 def stereo(camera: Camera) -> tuple[Camera, Camera]:

@@ -22,7 +22,7 @@ FEWER_THAN = 31  # dispatches in a frame
 
 BRANCH_ORDER = [*["MlpMatmul"] * 3, "BlendLl", *["BlendDetail", "InverseDwt"] * 2, "UpsampleTexels"]
 
-PARTS_ORDER = [BRANCH_ORDER, [*["MlpMatmul"] * 3, "MlpMatmulTransposed", *BRANCH_ORDER]]  # of a decode
+PARTS_ORDER = [BRANCH_ORDER, [*["MlpMatmul"] * 3, "MlpMatmulTransposed", *BRANCH_ORDER]]  # in the parts of a decode
 
 FRAME_ORDER = [
     *PARTS_ORDER[0],

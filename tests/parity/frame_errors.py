@@ -26,7 +26,7 @@ from mua.pose.resample import resample
 from mua.rig.bounds import frame_boxes, union
 from mua.rig.rig import Rig
 
-VISIBLE_WORD = 4  # of `arguments`
+VISIBLE_WORD = 4  # its place in `arguments`
 
 
 @dataclass(frozen=True)
@@ -34,9 +34,9 @@ class FrameErrors:
     """Largest errors over splats; the last four are of the splats that some eye sees."""
 
     position: float  # metres
-    color: float  # of one channel, sRGB 0..1
+    color: float  # in one channel, sRGB 0..1
     opacity: float
-    key: float  # of 65535, beyond half a key: what rounding leaves to the order
+    key: float  # in 65535ths, beyond half a key: what rounding leaves to the order
     key_bound: float  # what the error of positions and the rounding of depths may leave
 
 

@@ -157,7 +157,7 @@ def _sort_pass(
     places, values = digits
     visible = len(places)
     blocks = -(-(visible if second_pass else count) // BLOCK)
-    groups_of = (-(-count // BLOCK), 1, 1)  # of which the second pass leaves some idle
+    groups_of = (-(-count // BLOCK), 1, 1)  # the second pass leaves some of them idle
     owner = places // BLOCK
     counts: Array = np.stack([np.bincount(values[owner == block], minlength=256) for block in range(blocks)], axis=1)
     before: Array = np.cumsum(counts, axis=1) - counts

@@ -7,8 +7,8 @@ from mua.arrays import Array
 PACKED = np.dtype(
     [
         ("centre", "<f4", 3),
-        ("colors", "<u4", 2),  # of both eyes, with the opacity
-        ("axes", "<f2", (2, 2)),  # of either eye, column and row, pixels
+        ("colors", "<u4", 2),  # colours of both eyes, with the opacity
+        ("axes", "<f2", (2, 2)),  # axes for either eye: column and row, pixels
         ("minors", "<f2", 2),
     ]
 )
@@ -61,7 +61,7 @@ def screen_covariance(
 def assert_halves(
     found: Array,  # float16
     exact: Array,  # float64, before it is rounded to a half float
-    bound: Array | float,  # of the float32 that the GPU rounds to a half float
+    bound: Array | float,  # error of the float32 that the GPU rounds to a half float
 ) -> None:
     """Within the bound and one half float: GPUs round to the nearest or towards zero, and may flush subnormals."""
     held = np.clip(exact, -LARGEST_HALF, LARGEST_HALF)

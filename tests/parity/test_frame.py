@@ -38,7 +38,7 @@ from mua.player.splats import SplatFrame
 from mua.player.toggles import Toggles
 from mua.student.settings import preset
 
-MOST_KEYS = 4.0  # of 65535, by which splats so far from where they belong may be sorted wrongly
+MOST_KEYS = 4.0  # in 65535ths: splats that differ by less may be sorted wrongly
 FAR = 0.9  # outside of training
 OPACITY = 10  # channel
 

@@ -22,7 +22,7 @@ RADIUS, COUNT = 0.4, 3000
 # Of baked avatars: the deviation of a splat in distances of its neighbours, and the opacity.
 SPREAD, OPACITY = 0.65, 0.993
 ROOM = 0.88 * np.array([[-1.0, -1, -1], [1, 1, 1]])  # metres; the ball takes a twentieth of an image of it
-MOST_ALPHA = 0.99  # of one splat at one pixel, as in 3D Gaussian Splatting
+MOST_ALPHA = 0.99  # the most that one splat covers of a pixel, as in 3D Gaussian Splatting
 LEAST_EXACT_PSNR = 45.0  # dB
 
 

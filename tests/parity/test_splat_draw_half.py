@@ -16,7 +16,7 @@ from mua.kernels.splat_project import wide_deviations
 
 SCREEN = (48, 40)
 COUNT = 1200  # splats: tens lie over each pixel
-LARGEST_ERROR = 1 / 255  # of any channel of the image: at most a step of 8 bits
+LARGEST_ERROR = 1 / 255  # in any channel of the image; at most a step of 8 bits
 
 
 def to_nearest(values: Array) -> Array:

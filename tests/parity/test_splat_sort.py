@@ -18,7 +18,7 @@ COUNTS = [0, 1, 2, 255, 256, 257, 1021, 70001]
 BLOCK_COUNTS = [2047, 2048, 2049, 4096, 30011]  # around and beyond the 2048 keys of one group
 LARGE_COUNTS = [300_000, 600_000]  # 600,000 keys make more groups than ScanDigits has threads
 LARGEST = [0, 1, 0xFF, 0x100, 0xFFFE]
-SHARES = [0.0, 0.3, 0.999, 1.0]  # of the keys that are hidden
+SHARES = [0.0, 0.3, 0.999, 1.0]  # shares of hidden keys
 
 
 def random_keys(count: int, largest: int = 0xFFFE) -> Array:

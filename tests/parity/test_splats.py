@@ -29,8 +29,8 @@ from mua.player.frame import AvatarFrame
 from mua.player.splats import SplatFrame
 from mua.rig.bounds import union
 
-INDICES = (0, 3, 6)  # of the frame that each avatar shows
-VISIBLE_WORD = 4  # of `arguments`
+INDICES = (0, 3, 6)  # the frame that each avatar shows
+VISIBLE_WORD = 4  # its place in `arguments`
 
 
 def turned(angle: float, place: Sequence[float]) -> Array:

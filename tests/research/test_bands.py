@@ -80,8 +80,8 @@ def as_student(system: NetworkSystem, frames: TrainingFrames) -> Student:
     assert isinstance(system.network, BandNetwork)
     student = deepcopy(frames.student)
     parts = (GEOMETRY, APPEARANCE)
-    for branch, learnt, part in zip(student.branches, system.network.branches, parts, strict=True):
-        branch.load_state_dict(learnt.state_dict())
+    for branch, trained_branch, part in zip(student.branches, system.network.branches, parts, strict=True):
+        branch.load_state_dict(trained_branch.state_dict())
         scale_branch(branch, 1 / frames.weights[part])
         mean = frames.mean.of(part)
         branch.ll_mean.copy_(mean.ll[0])

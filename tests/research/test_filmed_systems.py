@@ -147,7 +147,7 @@ ENTRIES = [
     entry("smaller", learnt_cost(10, 10), system="linear"),
     entry("large", learnt_cost(10, 21), system="pca-only"),
 ]
-PSNR = {  # of two views of each split
+PSNR = {  # two views of each split
     TRAINED: {"teacher": (50, 50), "file": (49, 49), "ours": (31, 28), "ours x2": (40, 40), "small": (29, 29),
               "smaller": (20, 20), "large": (45, 45)},
     UNSEEN: {"teacher": (50, 50), "file": (49, 49), "ours": (25, 25), "ours x2": (40, 40), "small": (24, 24),

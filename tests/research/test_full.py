@@ -21,17 +21,17 @@ from mua_research.system import Budget, TrainingFrames
 def test_full_size_systems_are_taught_by_body_part(
     name: str, smooth_frames: TrainingFrames, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    taught: list[Locality] = []
+    localities: list[Locality] = []
 
     def listening(*tensors: Tensor, locality: Locality, **settings: Any) -> Conditioned:
-        taught.append(locality)
+        localities.append(locality)
         return regress(*tensors, locality=locality, **settings)
 
     monkeypatch.setattr(full, "regress", listening)
     trained(name, few(smooth_frames), Budget(steps=1, batch=4))
-    assert len(taught) == (1 if name == "pca-only" else 2)
-    for locality in taught:
-        energy = locality.shares.diagonal(dim1=1, dim2=2).sum(1)  # of the directions, by part
+    assert len(localities) == (1 if name == "pca-only" else 2)
+    for locality in localities:
+        energy = locality.shares.diagonal(dim1=1, dim2=2).sum(1)  # energy of the directions, by part
         assert (energy > 0).sum() > 1
         whole = locality.shares.sum(0)[:2, :2]  # the teacher moves two shapes: what lies beyond is rounding
         assert torch.allclose(whole, torch.eye(2), atol=1e-3)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import torch
-from compared import LEARNT, STEPS, explained, few, trained
+from compared import EXPLAINED, STEPS, explained, few, trained
 from torch import Tensor
 
 from mua.errors import InputError
@@ -23,12 +23,12 @@ RANDOM_STEPS = 60
 def test_learns_more_than_the_mean_texture_from_a_closed_form(name: str, smooth_frames: TrainingFrames) -> None:
     system = trained(name, smooth_frames, Budget(steps=STEPS, batch=4))
     assert system.steps == STEPS
-    assert explained(system, smooth_frames) > LEARNT
+    assert explained(system, smooth_frames) > EXPLAINED
 
 
 def test_convolutions_learn_more_than_the_mean_texture_from_noise(smooth_frames: TrainingFrames) -> None:
     budget = Budget(steps=RANDOM_STEPS, batch=4, rate=1e-2)
-    assert explained(trained("2d-conv+2d-conv", smooth_frames, budget), smooth_frames) > LEARNT
+    assert explained(trained("2d-conv+2d-conv", smooth_frames, budget), smooth_frames) > EXPLAINED
 
 
 @pytest.mark.parametrize("name", SYSTEMS)
@@ -60,7 +60,7 @@ def test_a_budget_without_an_end_is_refused(smooth_frames: TrainingFrames) -> No
 def test_a_budget_that_a_closed_form_uses_up_leaves_no_step(smooth_frames: TrainingFrames) -> None:
     system = trained("linear", smooth_frames, Budget(seconds=0))
     assert system.steps == 0
-    assert explained(system, smooth_frames) > LEARNT
+    assert explained(system, smooth_frames) > EXPLAINED
 
 
 def test_convolutions_start_at_the_mean_texture(smooth_frames: TrainingFrames) -> None:
@@ -71,11 +71,11 @@ def test_convolutions_start_at_the_mean_texture(smooth_frames: TrainingFrames) -
 
 def test_the_rate_rises_then_falls_to_zero_over_the_budget() -> None:
     place = torch.nn.Parameter(torch.zeros(1))
-    places, told = [0.0], list[Progress]()
+    places, reported = [0.0], list[Progress]()
 
     def report(progress: Progress) -> None:
         places.append(float(place.detach()))
-        told.append(progress)
+        reported.append(progress)
 
     def loss(_: Tensor) -> Tensor:
         return -place.sum()
@@ -90,9 +90,9 @@ def test_the_rate_rises_then_falls_to_zero_over_the_budget() -> None:
         generator=torch.Generator(),
         report=report,
     )
-    assert [(each.stage, each.step, each.steps) for each in told] == [("Adam", step, 50) for step in range(1, 51)]
-    assert [each.loss for each in told] == [-each for each in places[:-1]]
-    moves = np.diff(places)  # of Adam under a steady gradient: the rate
+    assert [(each.stage, each.step, each.steps) for each in reported] == [("Adam", step, 50) for step in range(1, 51)]
+    assert [each.loss for each in reported] == [-each for each in places[:-1]]
+    moves = np.diff(places)  # under a steady gradient, Adam moves by the rate
     done = np.arange(50) / 50
     np.testing.assert_allclose(moves, np.minimum(done / 0.1, 1) * 0.5 * (1 + np.cos(np.pi * done)), atol=1e-4)
 

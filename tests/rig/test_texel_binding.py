@@ -108,7 +108,7 @@ def test_what_moves_just_as_its_carrier_may_be_farther_from_it() -> None:
     carried = bind_texels(character, template, size=SIZE)
     dense = build_texel_map(character.mesh, SIZE)
     at = interpolate(character.mesh.vertices, character.mesh.faces[dense.triangles], dense.barycentrics)
-    own = (at[:, 2] < GAP / 2) & (at[:, 0] > 0.5 + 0.04)  # of the sheet and beyond what is near at any rate
+    own = (at[:, 2] < GAP / 2) & (at[:, 0] > 0.5 + 0.04)  # lies on the sheet, beyond what is near at any rate
     kept = ~carried.unbound[own]
     assert np.array_equal(kept, at[own, 0] - 0.5 <= 0.15)
     assert kept.any()

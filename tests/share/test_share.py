@@ -59,10 +59,10 @@ def share(command: Commands, *arguments: object) -> str:
 
 
 def test_a_folder_holds_player_avatar_poster_and_page(command: Commands, avatar_file: Path, tmp_path: Path) -> None:
-    said = share(command, avatar_file, "-o", tmp_path / "out", "--title", 'A <"hero">', "--clip", "wave")
+    printed = share(command, avatar_file, "-o", tmp_path / "out", "--title", 'A <"hero">', "--clip", "wave")
     files = {path.relative_to(tmp_path / "out").as_posix() for path in (tmp_path / "out").rglob("*") if path.is_file()}
     assert {"index.html", "page.js", "style.css", "player.js", "poster.png", "a.muaavatar"} <= files
-    assert said.startswith(f"{tmp_path / 'out'}: {len(files)} files, ")
+    assert printed.startswith(f"{tmp_path / 'out'}: {len(files)} files, ")
     assert (tmp_path / "out" / "a.muaavatar").read_bytes() == avatar_file.read_bytes()
     element = Tags((tmp_path / "out" / "index.html").read_text()).one("mua-avatar")
     assert (element["src"], element["poster"], element["clip"]) == ("a.muaavatar", "poster.png", "wave")
@@ -342,9 +342,9 @@ def test_mua_view_serves_until_it_is_interrupted(avatar_file: Path) -> None:
 def _assert_served(ran: "subprocess.Popen[str]", avatar_file: Path) -> None:
     assert ran.stdout is not None
     assert ran.stderr is not None
-    said = ran.stdout.readline()
-    found = re.fullmatch(r"a: http://127\.0\.0\.1:(\d+)/ \(Ctrl-C ends\)\n", said)
-    assert found, (said, ran.stderr.read() if ran.poll() is not None else "")
+    printed = ran.stdout.readline()
+    found = re.fullmatch(r"a: http://127\.0\.0\.1:(\d+)/ \(Ctrl-C ends\)\n", printed)
+    assert found, (printed, ran.stderr.read() if ran.poll() is not None else "")
     element = Tags(ask(int(found[1]), "/")[2].decode()).one("mua-avatar")
     assert (element["src"], element["show"], element["stereo"]) == ("a.muaavatar", "splats,template", "")
     assert (element["clip"], element["elevation"], element["orbit"]) == ("wave", "10", "-5")

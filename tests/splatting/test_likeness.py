@@ -6,7 +6,7 @@ from torchmetrics.functional.image import structural_similarity_index_measure
 
 from mua.splatting.likeness import structural_similarity
 
-BOUND = 1e-4  # of float32: SSIM divides variances as small as 1e-4, which are differences of squares
+BOUND = 1e-4  # rounding of float32; SSIM divides variances as small as 1e-4, which are differences of squares
 
 
 def pictures(height: int, width: int) -> tuple[torch.Tensor, torch.Tensor]:

@@ -22,7 +22,7 @@ from mua.splatting.projection import Eye, TorchSplats, half_extents, project
 from mua.splatting.rasterise import draw_quads, largest_shares, rasterise, rasterise_views
 from mua.splatting.tiles import TILE, assign
 
-STEP = 1e-8  # of the finite differences; a larger one reaches over the edges of windows
+STEP = 1e-8  # the step of the finite differences; a larger one reaches over the edges of windows
 DIFFERENTIATED = [field.name for field in fields(TorchSplats) if field.name != "normals"]
 
 
@@ -53,7 +53,7 @@ def test_splats_are_seen_shaped_and_ordered_as_by_the_reference_kernels() -> Non
     """The camera's principal point is off centre; splats are thinner than a pixel, far aside, and in one place."""
     splats = random_splats(400)
     centres = splats.centres * np.where(np.arange(400) % 3 == 0, 2.0, 1.0)[:, None]
-    centres[200:300] = centres[:100]  # of which the later lies before the earlier
+    centres[200:300] = centres[:100]  # the later of two equal ones lies before the earlier
     scales = splats.scales * np.where(np.arange(400) % 2, 1, 1e-3)[:, None] * [1, 1, 1e-3]
     scales[::7] *= 20
     splats = replace(splats, centres=centres, scales=scales)

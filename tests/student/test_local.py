@@ -182,7 +182,7 @@ def test_local_parts_carry_over_to_limbs_that_move_apart() -> None:
 
 
 def test_a_texel_belongs_to_the_part_of_its_sample() -> None:
-    texels = torch.tensor([0, 31, 32, 47, 48 * 47 + 32])  # of 48 x 48; part 1 begins at column 32
+    texels = torch.tensor([0, 31, 32, 47, 48 * 47 + 32])  # in a texture of 48 x 48; part 1 begins at column 32
     assert two_parts().texel_owners(texels).tolist() == [0, 0, 1, 1, 1]
 
 

@@ -8,7 +8,7 @@ import pytest
 import torch
 from captures import make_capture
 from commands import Commands
-from taught import FEW
+from small_teachers import FEW
 from torch_splats import camera, in_torch, random_splats
 
 from mua.splatting.gsplat_views import gsplat_views, intrinsics

@@ -10,7 +10,7 @@ import pytest
 import torch
 from captures import FRAMES, make_capture
 from PIL import Image
-from taught import FEW, SETTINGS, material, motion, teacher
+from small_teachers import FEW, SETTINGS, material, motion, teacher
 
 from mua import rotation
 from mua.arrays import Array

@@ -13,8 +13,8 @@ import pytest
 import torch
 import trimesh
 from captures import make_capture
+from small_teachers import FEW
 from synthetic_avatar import synthetic_avatar
-from taught import FEW
 
 import mua
 from mua.arrays import Array

@@ -7,8 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import torch
-from synthetic_avatar import synthetic_avatar
-from taught import (
+from small_teachers import (
     CAMERAS,
     FRAMES,
     SETTINGS,
@@ -18,9 +17,10 @@ from taught import (
     motion,
     run_in,
     subject,
-    taught,
     teacher,
+    trained_losses,
 )
+from synthetic_avatar import synthetic_avatar
 from together import errors as errors_of
 from together import start
 
@@ -56,7 +56,9 @@ def same(a: dict[str, torch.Tensor], b: dict[str, torch.Tensor]) -> bool:
 def test_training_comes_nearer_to_the_pictures_than_a_mean_texture(tmp_path: Path) -> None:
     shown = material()
     before = errors(ImageLoss(teacher(), shown, SETTINGS), shown)
-    image_loss = taught(tmp_path, settings=replace(SETTINGS, texture=replace(SETTINGS.texture, steps=40)), shown=shown)
+    image_loss = trained_losses(
+        tmp_path, settings=replace(SETTINGS, texture=replace(SETTINGS.texture, steps=40)), shown=shown
+    )
     mean = errors(image_loss, shown, moving=False)
     assert mean < 0.8 * before
     assert errors(image_loss, shown) < 0.7 * mean
@@ -67,23 +69,23 @@ def test_a_killed_training_ends_in_the_same_bytes(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, killed: tuple[str, int]
 ) -> None:
     monkeypatch.setattr("mua.teachers.trained.splat_training.CHECKPOINT_STEPS", 4)
-    whole = state(taught(tmp_path / "whole"))
+    whole = state(trained_losses(tmp_path / "whole"))
 
     def die(progress: Progress) -> None:
         if (progress.stage, progress.step) == killed:
             raise Killed
 
     with pytest.raises(Killed):
-        taught(tmp_path / "killed", die)
+        trained_losses(tmp_path / "killed", die)
     steps: list[tuple[str, int]] = []
-    again = state(taught(tmp_path / "killed", lambda progress: steps.append((progress.stage, progress.step))))
+    again = state(trained_losses(tmp_path / "killed", lambda progress: steps.append((progress.stage, progress.step))))
     assert same(whole, again)
     assert steps[0] == (killed[0], killed[1] // 4 * 4 + 1)  # it went on and did not begin anew
 
 
 def test_another_seed_is_another_training(tmp_path: Path) -> None:
-    other = state(taught(tmp_path / "b", settings=replace(SETTINGS, seed=1)))
-    assert not same(state(taught(tmp_path / "a")), other)
+    other = state(trained_losses(tmp_path / "b", settings=replace(SETTINGS, seed=1)))
+    assert not same(state(trained_losses(tmp_path / "a")), other)
 
 
 @torch.no_grad()
@@ -101,7 +103,7 @@ def test_parts_of_a_batch_add_up_to_its_loss(tmp_path: Path, count: int) -> None
 
 def test_two_processes_train_as_one_does(tmp_path: Path) -> None:
     alone: dict[tuple[str, int], float | None] = {}
-    taught(tmp_path / "alone", lambda one: alone.update({(one.stage, one.step): one.loss}))
+    trained_losses(tmp_path / "alone", lambda one: alone.update({(one.stage, one.step): one.loss}))
     assert errors_of(start("teach", tmp_path), "teach", tmp_path) == ["", ""]
     (one, losses), (other, _) = (torch.load(tmp_path / f"teach.{rank}.pt") for rank in range(2))
     assert same(one, other)
@@ -114,7 +116,7 @@ def test_a_camera_with_colours_of_its_own_does_not_stain_the_teacher(tmp_path: P
         return replace(seen, image=(seen.image + red).clamp(0, 1))
 
     longer = replace(SETTINGS, texture=Schedule(steps=40, batch=4, lr=3e-3))
-    image_loss = taught(tmp_path, settings=longer, shown=material(redder))
+    image_loss = trained_losses(tmp_path, settings=longer, shown=material(redder))
     change = image_loss.correction.change - image_loss.correction.change.mean(dim=0)
     assert change[1, 0].sum() > 0.01
     assert change[1, 0].sum() > 3 * change[1, 1:].sum(dim=1).abs().max()
@@ -138,7 +140,7 @@ def test_sun_from_one_side_stays_in_the_teacher(tmp_path: Path) -> None:
     """Cameras that are alike stand on both sides: what differs is the light, not the cameras."""
     shown = material(sun=0.5)
     longer = replace(SETTINGS, texture=Schedule(steps=25, batch=4, lr=2e-2))
-    image_loss = taught(tmp_path, settings=longer, shown=shown)
+    image_loss = trained_losses(tmp_path, settings=longer, shown=shown)
     wanted = brightness(image_loss, shown, drawn=False)
     assert abs(wanted) > 0.05
     assert brightness(image_loss, shown, drawn=True) == pytest.approx(wanted, rel=0.15)
@@ -150,7 +152,7 @@ def test_without_colour_correction_cameras_are_alike(tmp_path: Path) -> None:
 
     shown = material(darker)
     settings = replace(SETTINGS, texture=Schedule(steps=25, batch=4, lr=2e-2), colour_correction=False)
-    image_loss = taught(tmp_path, settings=settings, shown=shown)
+    image_loss = trained_losses(tmp_path, settings=settings, shown=shown)
     assert not image_loss.correction.change.any()
     wanted = brightness(image_loss, shown, drawn=False)
     assert brightness(image_loss, shown, drawn=True) == pytest.approx(wanted, rel=0.25)
@@ -169,7 +171,7 @@ def test_a_view_that_is_not_trusted_counts_as_little_as_it_weighs() -> None:
 
 
 def test_the_teacher_keeps_the_mean_look(tmp_path: Path) -> None:
-    image_loss = taught(tmp_path)
+    image_loss = trained_losses(tmp_path)
     assert image_loss.looks.any()
     torch.testing.assert_close(image_loss.teacher.look, image_loss.looks.mean(dim=0))
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import torch
-from taught import motion, subject, teacher
+from small_teachers import motion, subject, teacher
 
 from mua.splatting.posing import rotate
 from mua.teachers.trained.texels import SurfaceTextures, TexelNets, normals

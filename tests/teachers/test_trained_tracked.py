@@ -7,8 +7,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 import torch
+from small_teachers import SETTINGS, material, motion, subject, teacher
 from synthetic_avatar import synthetic_avatar
-from taught import SETTINGS, material, motion, subject, teacher
 
 from mua import rotation
 from mua.arrays import Array

@@ -9,7 +9,7 @@ from mua.errors import InputError
 from mua.rig.texel_map import TexelMap
 from mua.texture.fill import Fill
 
-PYRAMID_LEVELS = 10  # of a texture of up to 1,024 texels
+PYRAMID_LEVELS = 10  # enough for a texture of up to 1,024 texels
 ROUNDING = 16 * PYRAMID_LEVELS * float(torch.finfo(torch.float32).eps)  # about 16 operations per level on unit values
 
 

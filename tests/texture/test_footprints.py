@@ -15,7 +15,7 @@ from mua.texture.sharpness import SPREAD
 from mua.texture.surfels import Surfels, rest_surfels
 
 SIZE = 48
-OPAQUE = 0.8  # of what lies behind, a fifth shines through where two charts meet
+OPAQUE = 0.8  # where two charts meet, a fifth of what lies behind shines through
 
 
 def laid(mesh: Mesh) -> tuple[TexelMap, Surfels, np.ndarray]:

@@ -14,7 +14,7 @@ from mua.texture.sharpness import SPREAD
 from mua.texture.surfels import rest_surfels
 
 SIZE = 40
-SIDE = 0.05  # of a texel's square, in units of the sheet
+SIDE = 0.05  # side of a texel's square, in units of the sheet
 BY_TEXEL = 0.3  # texels, by which an outline may be missed: surfels that also close a seam reach a little beyond theirs
 
 

@@ -37,14 +37,14 @@ def test_every_warning_and_every_failure_counts_but_unitys_pragma(
 
 
 @pytest.mark.parametrize(
-    ("said", "broken", "there", "status"),
+    ("lines", "broken", "there", "status"),
     [([], [], True, 0), (["warning: x"], [], True, 1), ([], ["a rule"], True, 1), ([], [], False, 1)],
 )
 def test_ends_with_1_where_anything_is_wrong(
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
     compiler: Compiler,
-    said: list[str],
+    lines: list[str],
     broken: list[str],
     there: bool,
     status: int,
@@ -52,7 +52,7 @@ def test_ends_with_1_where_anything_is_wrong(
     monkeypatch.setattr("shader_compilers.FINDERS", {compiler.name: None, "another": None})
     monkeypatch.setattr("shader_compilers.INSTALL", {compiler.name: "a package", "another": "a package of its own"})
     monkeypatch.setattr("shader_compilers.find", lambda name: compiler if there and name == compiler.name else None)
-    monkeypatch.setattr(check_shaders, "messages", lambda *_: said)
+    monkeypatch.setattr(check_shaders, "messages", lambda *_: lines)
     monkeypatch.setattr(check_shaders, "rule_faults", lambda: broken)
     monkeypatch.setattr(check_shaders, "entry_points", lambda: [(Path("a.compute"), "Main", "comp")])
     monkeypatch.setenv("COLUMNS", "200")
@@ -61,6 +61,6 @@ def test_ends_with_1_where_anything_is_wrong(
     printed = capsys.readouterr().out
     assert ended.value.code == status
     assert "another is not on this machine; it comes with a package of its own" in printed
-    assert all(f"a.compute: Main: {compiler.name}: {line}" in printed for line in said)
+    assert all(f"a.compute: Main: {compiler.name}: {line}" in printed for line in lines)
     assert all(line in printed for line in broken)
-    assert ("ok" in printed) == (there and not said)
+    assert ("ok" in printed) == (there and not lines)

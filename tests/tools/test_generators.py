@@ -36,7 +36,7 @@ def stale(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: pytest.Fixtu
         written.write_text(before)
         monkeypatch.setattr(module, "README", written)
         monkeypatch.setattr(module, "ROOT", tmp_path)
-        assert module.generate() == before  # of this checkout
+        assert module.generate() == before  # the checkout's own
         written.write_text(before.replace("| 256 |", "| 255 |"))
     else:
         written = tmp_path / "package.json.meta"

@@ -193,7 +193,7 @@ def test_the_report_has_the_worst_motion_first_and_its_image(
     monkeypatch.setattr(measure_unseen, "Teacher", lambda *_, **__: Stub(avatar))
     monkeypatch.setattr(measure_unseen, "motions_of", lambda *_: motions)
     monkeypatch.setattr(measure_unseen, "broken_rigs", lambda *_: [])
-    for bar in ("DISTANCE", "SIZE"):  # of the random splats of this student
+    for bar in ("DISTANCE", "SIZE"):  # the random splats of this student have both
         monkeypatch.setattr(measure_unseen, bar, 1e9)
     options = [f"--recording={written}", f"--json={tmp_path / 'a.json'}", f"--sheet={tmp_path / 'a.png'}"]
     monkeypatch.setattr("sys.argv", ["measure", str(trained), *options])

@@ -144,8 +144,8 @@ def test_a_job_that_was_stopped_goes_on_where_it_was(
     kept.parent.mkdir(parents=True)
     kept.write_text("finished before")
     renderer.render(job, threads=1)
-    said = capsys.readouterr().out.splitlines()
-    assert (said[0], said[-1]) == ("rendered 1 of 20", "rendered 20 of 20")
+    printed = capsys.readouterr().out.splitlines()
+    assert (printed[0], printed[-1]) == ("rendered 1 of 20", "rendered 20 of 20")
     assert kept.read_text() == "finished before"
     for clip in capture.clips:
         for camera in capture.cameras:
@@ -172,19 +172,19 @@ def test_a_python_without_blender_is_named_with_what_to_do(order: Order, tmp_pat
 
 def test_a_renderer_that_fails_is_reported_with_its_log(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     log = tmp_path / "blender.log"
-    said = "import sys; print('rendered 1 of 2'); print('Fra:1 Mem'); sys.exit(int(sys.argv[1]))"
-    run_renderer([sys.executable, "-c", said, "0"], log=log)
+    program = "import sys; print('rendered 1 of 2'); print('Fra:1 Mem'); sys.exit(int(sys.argv[1]))"
+    run_renderer([sys.executable, "-c", program, "0"], log=log)
     assert (capsys.readouterr().out, log.read_text()) == ("rendered 1 of 2\n", "Fra:1 Mem\n")
     with pytest.raises(InputError, match=r"rendering ended with status 3; .*blender.log says why"):
-        run_renderer([sys.executable, "-c", said, "3"], log=log)
+        run_renderer([sys.executable, "-c", program, "3"], log=log)
 
 
 @pytest.mark.parametrize("given", [["--cameras", "0"], ["--size", "8"], ["--frames", "x"], ["--seed", "-1"]])
 def test_a_number_that_cannot_be_is_refused_by_name(given: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit):
         parser().parse_args(["hero.glb", "-o", "made", *given])
-    said = capsys.readouterr().err.splitlines()[-1]
-    assert f"argument {given[0]}: is {given[1]!r}, expected a whole number of at least" in said
+    printed = capsys.readouterr().err.splitlines()[-1]
+    assert f"argument {given[0]}: is {given[1]!r}, expected a whole number of at least" in printed
 
 
 @pytest.mark.parametrize("shift", [0.25, 1.0, 3.0])

@@ -5,7 +5,6 @@ from pathlib import Path
 import check_shaders
 import gen_kernel_table
 import pytest
-import shader_compilers
 import shader_rules
 import shader_source
 
@@ -100,10 +99,6 @@ def written(tmp_path: Path, text: str) -> shader_source.Shader:
 
 def test_the_shaders_of_this_checkout_keep_the_rules() -> None:
     assert check_shaders.rule_faults() == []
-
-
-def test_table_in_the_readme_is_up_to_date() -> None:
-    assert gen_kernel_table.README.read_text() == gen_kernel_table.generate()
 
 
 def test_every_kernel_is_in_frame_order() -> None:
@@ -205,15 +200,3 @@ def test_distinguishes_reads_from_writes(tmp_path: Path) -> None:
         "f": (False, True),
         "g": (False, True),
     }
-
-
-@pytest.mark.parametrize("name", ["glslang", "slang"])
-def test_reports_the_message_of_a_compiler(tmp_path: Path, name: str) -> None:
-    compiler = shader_compilers.find(name)
-    assert compiler is not None
-    good = written(tmp_path, GOOD)
-    assert check_shaders.messages(compiler, good.path, "Scale", "comp") == []
-    bad = written(tmp_path, GOOD.replace("2 * value", "2 * worth"))
-    assert any(
-        "worth" in line or "error" in line for line in check_shaders.messages(compiler, bad.path, "Scale", "comp")
-    )

@@ -23,7 +23,7 @@ from mua.gpu.reflect import Constant, reflect
 
 FLOATS = tuple(f"half{count} float{count}" for count in ("", 2, 3, 4))  # slangc's halves have 16 bits
 STAND_IN_WORDS = ("UNITY_COLORSPACE_GAMMA", "VIEW SV_ViewID", *FLOATS)
-SPLAT_WORDS, VERTICES = 8, 6  # of a splat
+SPLAT_WORDS, VERTICES = 8, 6  # per splat
 LEADING = 1000  # splats, more than the device takes at a time
 THIN = 0x2E662E66  # two halves of 0.1 pixels
 BLOCK = re.compile(r"layout\(set = (\d+), binding = (\d+), std\d+\)[ \w]*\b(uniform|buffer) (\w+) \{")

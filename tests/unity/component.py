@@ -5,30 +5,25 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from csharp import PROGRAMS, ROOT, RUNTIME, CSharp
+from csharp import PROGRAMS, ROOT, CSharp, by_name
 from synthetic_avatar import synthetic_avatar, with_surface
 
 from mua.asset import write
 from mua.avatar.model import Layer
 
-STAND_INS = Path(__file__).parent / "stand_ins"
 KERNELS = ROOT / "ComputeShaders"
 WIDE = 1500  # a layer that needs more than one frame's chunk
 SECOND = 72  # frames of the program's player loop
-RATE = 24  # of the synthetic avatars
+RATE = 24  # frames a second of the synthetic avatars
 TURNED, TRANSLATED = 1e-6, 1e-5  # float32 of a few transforms on top of each other
-Told = dict[str, list[str]]
-Story = Callable[..., Told]
+Reports = dict[str, list[str]]
+Story = Callable[..., Reports]
 
 
 def build_program(csharp: CSharp) -> Path:
     """programs/Component*.cs with the package's runtime."""
-    engine = csharp.build([STAND_INS / "UnityEngine"], library=True, name="UnityEngine")
-    file = csharp.build([RUNTIME / "Format"], library=True, name="Mua.Format")
-    motion = csharp.build([RUNTIME / "Motion"], library=True, name="Mua.Motion", references=[file])
-    programs = [PROGRAMS / "shared", *sorted(PROGRAMS.glob("Component*.cs"))]
-    sources = [*sorted(RUNTIME.glob("*.cs")), RUNTIME / "Kernels", *programs]
-    return csharp.build(sources, name="ComponentProgram", references=[engine, file, motion])
+    programs = sorted(PROGRAMS.glob("Component*.cs"))
+    return csharp.runtime(PROGRAMS / "shared", *programs, name="ComponentProgram")
 
 
 def write_avatars(folder: Path) -> None:
@@ -46,13 +41,10 @@ def write_avatars(folder: Path) -> None:
     (folder / "damaged.muaavatar").write_bytes(content)
 
 
-def tell(csharp: CSharp, program: Path, folder: Path, name: str, *files: str) -> Told:
+def tell(csharp: CSharp, program: Path, folder: Path, name: str, *files: str) -> Reports:
     """What a story says, by key; all that it made is given back at its end."""
-    reported: Told = {"log": []}
-    said = csharp.run(program, KERNELS, name, *(folder / f"{file}.muaavatar" for file in files))
-    for line in said.splitlines():
-        key, value = line.split("\t", 1)
-        reported.setdefault(key, []).append(value)
+    printed = csharp.run(program, KERNELS, name, *(folder / f"{file}.muaavatar" for file in files))
+    reported = {"log": [], **by_name(printed)}
     assert (reported["alive"], reported["requests"], reported["world"]) == (["0"], ["0"], ["0"]), reported
     return reported
 

@@ -10,7 +10,7 @@ import engine_shaders
 import package_content
 import pipelines
 import pytest
-from csharp import CSharp
+from csharp import PROGRAMS, CSharp
 from format_program import program
 
 __all__ = ["program"]  # a fixture, which modules with a program of their own replace
@@ -35,6 +35,12 @@ def content(csharp: CSharp) -> package_content.Content:
 def component_program(csharp: CSharp) -> Path:
     """The program of stories about AvatarRenderer."""
     return component.build_program(csharp)
+
+
+@pytest.fixture(scope="session")
+def frame_program(csharp: CSharp) -> Path:
+    """The program that records frames of scenarios."""
+    return csharp.runtime(PROGRAMS / "shared", PROGRAMS / "scenario", PROGRAMS / "FrameProgram.cs")
 
 
 @pytest.fixture(scope="module")

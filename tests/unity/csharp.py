@@ -11,6 +11,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 RUNTIME = ROOT / "unity-package" / "Runtime"
 PROGRAMS = Path(__file__).parent / "programs"
+STAND_INS = Path(__file__).parent / "stand_ins"
 OPTIONS = ("-langversion:7.2", "-warn:4", "-warnaserror", "-optimize+", "-nologo")  # what every Unity 6 understands
 
 
@@ -25,7 +26,7 @@ class CSharp:
         sources: Sequence[Path],  # files, or folders of which all .cs files are meant
         *,
         library: bool = False,
-        name: str = "",  # of the assembly; the last source's where there is none
+        name: str = "",  # the assembly's; the last source's where there is none
         references: Sequence[Path] = (),
         defines: Sequence[str] = (),
     ) -> Path:
@@ -49,12 +50,34 @@ class CSharp:
             target.replace(built)
         return built
 
+    def engine(self) -> Path:
+        """The stand-ins of the engine."""
+        return self.build([STAND_INS / "UnityEngine"], library=True, name="UnityEngine")
+
+    def runtime(
+        self, *sources: Path, name: str = "", references: Sequence[Path] = (), defines: Sequence[str] = ()
+    ) -> Path:
+        """A program in the assembly of the package's runtime, the last of `sources`, over the engine's stand-ins."""
+        file = self.build([RUNTIME / "Format"], library=True, name="Mua.Format")
+        motion = self.build([RUNTIME / "Motion"], library=True, name="Mua.Motion", references=[file])
+        package = [*sorted(RUNTIME.glob("*.cs")), RUNTIME / "Kernels", *sources]
+        return self.build(package, name=name, references=[self.engine(), *references, file, motion], defines=defines)
+
     def run(self, program: Path, *arguments: object, content: bytes = b"") -> str:
         """What the program prints; fails the test with its words where it does not end well."""
         command = ["mono", str(program), *map(str, arguments)]
         done = subprocess.run(command, input=content, capture_output=True, check=False)
         assert done.returncode == 0, (done.stdout[-2000:] + done.stderr[-4000:]).decode(errors="replace")
         return done.stdout.decode()
+
+
+def by_name(printed: str) -> dict[str, list[str]]:
+    """The values of lines that are a name, a tab and a value, by the name."""
+    found: dict[str, list[str]] = {}
+    for line in printed.splitlines():
+        name, _, value = line.partition("\t")
+        found.setdefault(name, []).append(value)
+    return found
 
 
 def _digest(files: Sequence[Path], options: Sequence[str]) -> str:

@@ -65,8 +65,8 @@ class Engine:
 
     def glsl(self, path: Path, entry: str, stage: str, defines: tuple[str, ...]) -> str:
         """An entry point as Unity hands it to the compiler of SPIR-V."""
-        compiled, said = self.bytecode(path, entry, stage, defines)
-        assert compiled.is_file(), said
+        compiled, printed = self.bytecode(path, entry, stage, defines)
+        assert compiled.is_file(), printed
         output = compiled.with_suffix(f".{stage}")
         subprocess.run([*self.hlslcc, str(compiled), str(output)], check=True)
         return output.read_text()

@@ -6,11 +6,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from csharp import ROOT, CSharp
+from csharp import ROOT, STAND_INS, CSharp
 
 PACKAGE = ROOT / "unity-package"
-
-STAND_INS = Path(__file__).parent / "stand_ins"
 
 ENGINES = {  # an engine has the symbols of all before it; stand-ins say in these what came, and what was deprecated
     "6000.0": ("UNITY_2022_3_OR_NEWER", "UNITY_6000_0_OR_NEWER"),
@@ -91,7 +89,7 @@ class Compiler:
         packages: bool,
         without: Collection[str] = (),
         engine: str = OLDEST,
-        symbols: Collection[str] = (),  # of the project
+        symbols: Collection[str] = (),  # what the project defines
     ) -> None:
         self._csharp, self._platform, self._packages, self._without = csharp, platform, packages, without
         self._engine = (*engine_symbols(engine), *symbols)

@@ -6,28 +6,24 @@ The stand-ins call the package as the pipelines do and record what it appends; n
 import base64
 import itertools
 import json
-import sys
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from csharp import PROGRAMS, ROOT, RUNTIME, CSharp
-from recorded_frames import MIRROR, STAND_INS
+from csharp import PROGRAMS, ROOT, RUNTIME, STAND_INS, CSharp, by_name
+from frame_bounds import FRAME_ORDER
+from recorded_frames import eye_lines
 from synthetic_avatar import synthetic_avatar, with_surface
 
 from mua.arrays import Array
 from mua.asset import write
-from mua.avatar.camera import EYE_DISTANCE, NEAR, Camera, orbit, stereo
+from mua.avatar.camera import EYE_DISTANCE, Camera, orbit, stereo
 from mua.avatar.decode import decode_clip_frame
-
-sys.path.append(str(ROOT / "tests" / "parity"))
-
-from frame_bounds import FRAME_ORDER
 
 SPLAT, SURFACE = "Hidden/MUA/Splat", "Hidden/MUA/Surface"
 WINDOW = (640, 480)  # pixels of the stand-ins' cameras
-EYE = (256, 192)  # of a headset's textures
+EYE = (256, 192)  # pixels of a headset's textures
 MOVED = 1  # the clip's frame in the recording's frame "moved"
 DECODED = FRAME_ORDER[: FRAME_ORDER.index("SplatProject")]
 SORTED = FRAME_ORDER[len(DECODED) :]
@@ -44,7 +40,7 @@ class Mode:
     passes: int  # over a camera
     eyes: int  # that a pass is given
     instances: int  # that the device writes for an indirect draw
-    multiplier: int  # of instances of direct draws, by the engine
+    multiplier: int  # the engine multiplies the instances of direct draws by this
 
     @property
     def screen(self) -> tuple[int, int]:
@@ -104,7 +100,7 @@ class Recorded:
 
     mode: Mode
     path: Path
-    said: dict[str, list[str]]
+    reported: dict[str, list[str]]
     events: list[Event]
 
     def frames(self, name: str) -> list[list[Event]]:
@@ -155,29 +151,19 @@ def content(kind: str, encoded: str) -> Array:
 
 def built(csharp: CSharp, *defines: str) -> Path:
     """The program with the package and the engine's and URP's stand-ins."""
-    engine = csharp.build([STAND_INS / "UnityEngine"], library=True, name="UnityEngine")
     core, universal = (f"Unity.RenderPipelines.{name}.Runtime" for name in ("Core", "Universal"))
-    core_file = csharp.build([STAND_INS / core], library=True, name=core, references=[engine])
-    pipeline = [engine, core_file]
-    pipeline.append(csharp.build([STAND_INS / universal], library=True, name=universal, references=pipeline))
-    file = csharp.build([RUNTIME / "Format"], library=True, name="Mua.Format")
-    motion = csharp.build([RUNTIME / "Motion"], library=True, name="Mua.Motion", references=[file])
-    package = [*sorted(RUNTIME.glob("*.cs")), RUNTIME / "Kernels", RUNTIME / "Urp"]
-    sources = [*package, PROGRAMS / "shared", PROGRAMS / "scenario", PROGRAMS / "PipelineProgram.cs"]
-    return csharp.build(sources, references=[*pipeline, file, motion], defines=defines)
+    pipeline = [csharp.build([STAND_INS / core], library=True, name=core, references=[csharp.engine()])]
+    below = [csharp.engine(), *pipeline]
+    pipeline.append(csharp.build([STAND_INS / universal], library=True, name=universal, references=below))
+    program = PROGRAMS / "PipelineProgram.cs"
+    sources = (RUNTIME / "Urp", PROGRAMS / "shared", PROGRAMS / "scenario", program)
+    return csharp.runtime(*sources, references=pipeline, defines=defines)
 
 
 def run(csharp: CSharp, program: Path, mode: Mode, folder: Path) -> Recorded:
     write(folder / "avatar.muaavatar", with_surface(synthetic_avatar(1)), storage="f16")
-    lines = ["screen {} {} {}".format(*EYE, NEAR)]
-    for camera in cameras():
-        numbers = np.concatenate([(camera.view @ MIRROR).ravel(), camera.projection.ravel()])
-        lines.append("eye " + " ".join(repr(float(number)) for number in numbers))
-    (folder / "eyes.txt").write_text("\n".join(lines))
+    (folder / "eyes.txt").write_text("\n".join(eye_lines(cameras())))
     given = (mode.pipeline, mode.stereo, folder / "eyes.txt", folder / "avatar.muaavatar")
-    said: dict[str, list[str]] = {"log": []}
-    for line in csharp.run(program, ROOT / "ComputeShaders", folder / "recording", *given).splitlines():
-        name, value = line.split("\t")
-        said.setdefault(name, []).append(value)
+    reported = {"log": [], **by_name(csharp.run(program, ROOT / "ComputeShaders", folder / "recording", *given))}
     events = [json.loads(line) for line in (folder / "recording.json").read_text().splitlines()]
-    return Recorded(mode, folder / "recording", said, events)
+    return Recorded(mode, folder / "recording", reported, events)

@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
-from csharp import PROGRAMS, CSharp
+from csharp import PROGRAMS, CSharp, by_name
 from package_compiler import Compiler, assemblies
 
-Told = dict[str, list[str]]
+Reports = dict[str, list[str]]
 PACKAGES = ("Unity.RenderPipelines.", "Unity.XR.Management", "Unity.XR.OpenXR")
 
 
@@ -16,13 +16,8 @@ class ProjectProgram:
         self._csharp = csharp
         self._built: dict[tuple[bool, bool], Path] = {}
 
-    def tell(self, story: str, *arguments: object, packages: bool = True, sample: bool = True) -> Told:
-        """Lines by their first word."""
-        reported: Told = {}
-        for line in self._csharp.run(self._program(packages, sample), story, *arguments).splitlines():
-            key, value = line.split("\t", 1)
-            reported.setdefault(key, []).append(value)
-        return reported
+    def tell(self, story: str, *arguments: object, packages: bool = True, sample: bool = True) -> Reports:
+        return by_name(self._csharp.run(self._program(packages, sample), story, *arguments))
 
     def _program(self, packages: bool, sample: bool) -> Path:
         if (packages, sample) not in self._built:

@@ -1,15 +1,23 @@
 """Frames that the C# records, replayed and unpacked."""
 
-from pathlib import Path
+from collections.abc import Sequence
 
 import numpy as np
 
 from mua import rotation
 from mua.arrays import Array
+from mua.avatar.camera import NEAR, Camera
 
 MIRROR = np.diag([-1.0, 1, 1, 1])  # Unity's left-handed world to the kernels'
 
-STAND_INS = Path(__file__).parent / "stand_ins"
+
+def eye_lines(cameras: Sequence[Camera], *, instances: int = 1) -> list[str]:
+    """The lines of a scenario that set the eyes: Unity's matrices; an indirect draw is of so many instances."""
+    lines = ["screen {} {} {} {}".format(*cameras[0].screen, NEAR, instances)]
+    for camera in cameras:
+        numbers = np.concatenate([(camera.view @ MIRROR).ravel(), camera.projection.ravel()])
+        lines.append("eye " + " ".join(repr(float(number)) for number in numbers))
+    return lines
 
 
 def place_of(numbers: tuple[float, ...]) -> Array:

@@ -21,7 +21,7 @@ from mua.gpu.kernel import Kernel
 from mua.gpu.reflect import Constant
 
 INDIRECT_ARGUMENTS, STRUCTURED = 256, 16  # GraphicsBuffer.Target
-MOST_GROUPS = 65535  # of a dispatch, along an axis
+MOST_GROUPS = 65535  # the most groups of a dispatch along an axis
 KINDS = {"Int": np.int32, "Float": np.float32, "Vector": np.float32, "Matrix": np.float32}
 SCALARS = {"Int": ("uint", "int"), "Float": ("float",), "Vector": ("float",), "Matrix": ("float",)}
 

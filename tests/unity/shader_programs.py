@@ -36,7 +36,7 @@ class Program:
     """One pass of a .shader file."""
 
     shader: str
-    name: str  # of the pass
+    name: str  # the pass's name
     index: int  # among the passes, from 0
     state: dict[str, str]  # fixed-function settings by their words
     text: str  # HLSL, with what the passes share before it

@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 from csharp import CSharp
 from package_compiler import PACKAGE
-from project_program import ProjectProgram, Told
+from package_content import Content
+from project_program import ProjectProgram, Reports
 
 from mua.deploy.build import AGAIN, ERRORS
 
@@ -17,12 +18,12 @@ def program(csharp: CSharp) -> ProjectProgram:
     return ProjectProgram(csharp)
 
 
-def said(reported: Told) -> str:
+def outcome(reported: Reports) -> str:
     """What mua-deploy reads: the last line of the log, without its kind."""
     return reported["log"][-1].split(" ", 1)[1]
 
 
-def assert_project_is_left(reported: Told) -> None:
+def assert_project_is_left(reported: Reports) -> None:
     assert (reported["identifier"], reported["bundle"], reported["player"]) == (
         ["org.example.own"],
         ["True"],
@@ -43,7 +44,7 @@ def test_writes_the_apk_under_its_name_at_last(program: ProjectProgram, tmp_path
         ["True"],
         ["None"],
     )
-    assert re.fullmatch(rf"MUA-BUILD OK {re.escape(str(apk))}, 0\.0 MB, \d+ s", said(reported))
+    assert re.fullmatch(rf"MUA-BUILD OK {re.escape(str(apk))}, 0\.0 MB, \d+ s", outcome(reported))
     assert_project_is_left(reported)
 
 
@@ -64,7 +65,7 @@ def test_a_build_that_fails_leaves_nothing(program: ProjectProgram, tmp_path: Pa
     apk.write_text("old")
     reported = program.tell("Builds", "Quest", does, "-muaOutput", apk)
     assert reported["ended"] == ["Failed"]
-    assert said(reported) == f"MUA-BUILD FAIL {sentence}"
+    assert outcome(reported) == f"MUA-BUILD FAIL {sentence}"
     assert ERRORS[0].findall("\n".join(reported["log"])) == [sentence]
     assert not list(tmp_path.iterdir())
     assert_project_is_left(reported)
@@ -88,7 +89,7 @@ def test_refuses_an_output_that_is_none(
     (tmp_path / "file").write_text("in the way")
     reported = program.tell("Builds", "Quest", "succeeds", *(word.format(tmp_path) for word in words))
     assert reported["ended"] == ["Failed"]
-    assert said(reported).startswith(f"MUA-BUILD FAIL {sentence.format(tmp_path)}")
+    assert outcome(reported).startswith(f"MUA-BUILD FAIL {sentence.format(tmp_path)}")
     assert "location" not in reported
 
 
@@ -109,7 +110,7 @@ def test_windows_gets_a_folder(program: ProjectProgram, tmp_path: Path) -> None:
 def test_windows_never_deletes_what_is_not_the_player(program: ProjectProgram, tmp_path: Path) -> None:
     (tmp_path / "thesis.txt").write_text("mine")
     reported = program.tell("Builds", "PcLink", "succeeds", "-muaOutput", tmp_path)
-    assert said(reported) == (
+    assert outcome(reported) == (
         f"MUA-BUILD FAIL -muaOutput is {tmp_path}, which holds something else than the player, "
         "expected a new folder's name"
     )
@@ -120,10 +121,10 @@ def test_brings_the_sample_and_packages_in_one_run(program: ProjectProgram, tmp_
     words = ("Quest", "succeeds", "-muaOutput", tmp_path / "a.apk")
     reported = program.tell("Builds", *words, sample=False)
     assert (reported["ended"], reported["imported"]) == (["Again"], ["True"])
-    assert AGAIN.findall(said(reported)) == ["imported the sample VR Player"]
+    assert AGAIN.findall(outcome(reported)) == ["imported the sample VR Player"]
     reported = program.tell("Builds", *words, sample=False, packages=False)
     assert (reported["ended"], reported["imported"]) == (["Again"], ["True"])
-    assert "com.unity.xr.openxr" in AGAIN.findall(said(reported))[0]
+    assert "com.unity.xr.openxr" in AGAIN.findall(outcome(reported))[0]
     assert not list(tmp_path.iterdir())
 
 
@@ -141,13 +142,13 @@ def test_brings_the_sample_and_packages_in_one_run(program: ProjectProgram, tmp_
 def test_says_what_is_wrong_with_the_sample(program: ProjectProgram, tmp_path: Path, state: str, sentence: str) -> None:
     output = ("-muaOutput", tmp_path / "a.apk")
     reported = program.tell("BringsSample", state, "Quest", "succeeds", *output, sample=False)
-    assert (reported["ended"], said(reported)) == (["Failed"], f"MUA-BUILD FAIL {sentence}")
+    assert (reported["ended"], outcome(reported)) == (["Failed"], f"MUA-BUILD FAIL {sentence}")
 
 
 def test_a_project_that_cannot_be_set_up_is_not_built(program: ProjectProgram, tmp_path: Path) -> None:
     reported = program.tell("BuildsForOther", tmp_path / "a.apk")
     assert reported["ended"] == ["Failed"]
-    assert said(reported) == (
+    assert outcome(reported) == (
         "MUA-BUILD FAIL Build > Platform is StandaloneLinux64, expected Android: start Unity with -buildTarget Android"
     )
     assert "location" not in reported
@@ -156,24 +157,16 @@ def test_a_project_that_cannot_be_set_up_is_not_built(program: ProjectProgram, t
 def test_ends_the_editor_with_the_outcome(program: ProjectProgram) -> None:
     reported = program.tell("RunsFromCommandLine")
     assert reported["exit"] == ["exit 1"]
-    assert said(reported).startswith("MUA-BUILD FAIL the command line has no -muaOutput PATH")
+    assert outcome(reported).startswith("MUA-BUILD FAIL the command line has no -muaOutput PATH")
 
 
 @pytest.mark.parametrize(("name", "output"), [("Quest", "a.apk"), ("PC Link", "Player")])
 def test_each_command_builds_for_its_platform(program: ProjectProgram, tmp_path: Path, name: str, output: str) -> None:
     reported = program.tell("RunsWithoutModule", name, "-muaOutput", tmp_path / output)
-    assert said(reported).startswith(f"MUA-BUILD FAIL This editor cannot build for {name}: ")
+    assert outcome(reported).startswith(f"MUA-BUILD FAIL This editor cannot build for {name}: ")
 
 
-def test_the_sample_has_what_the_build_looks_for() -> None:
-    source = (PACKAGE / "Editor" / "PlayerSample.cs").read_text()
-    name, kind, method = (
-        re.findall(rf'const string {word} = "(.+)"', source)[0] for word in ("Name", "SceneType", "SceneMethod")
-    )
-    sample = next(
-        each for each in json.loads((PACKAGE / "package.json").read_text())["samples"] if each["displayName"] == name
-    )
-    namespace, type_name = kind.rsplit(".", 1)
-    scene = (PACKAGE / sample["path"] / "Editor" / f"{type_name}.cs").read_text()
-    assert f"namespace {namespace}\n" in scene
-    assert f"public static void {method}(string path)" in scene
+def test_the_sample_has_what_the_build_looks_for(content: Content) -> None:
+    samples = json.loads((PACKAGE / "package.json").read_text())["samples"]
+    assert "VR Player" in [sample["displayName"] for sample in samples]
+    assert "Mua.Samples.VrPlayer.Editor.PlayerScene.Create" in content.declared["member"]

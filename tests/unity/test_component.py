@@ -1,21 +1,16 @@
 """AvatarRenderer in a player loop of stand-ins: what it shows beside others, and what that costs."""
 
 import json
-import sys
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from component import Story, counts
-from csharp import ROOT
+from frame_bounds import FRAME_ORDER
 from synthetic_avatar import synthetic_avatar, with_surface
 
 from mua.asset import write
-
-sys.path.append(str(ROOT / "tests" / "parity"))
-
-from frame_bounds import FRAME_ORDER
 
 
 def test_a_component_without_an_avatar_has_nothing_and_takes_nothing(story: Story) -> None:
@@ -141,7 +136,7 @@ def test_an_avatar_stands_where_its_parents_carry_it(story: Story) -> None:
 
 
 def test_an_avatar_casts_no_shadow_before_it_has_a_shape(story: Story) -> None:
-    assert story("IsNotDrawnYet", "first")["shadows"] == ["Ready 0", "Ready 2"]  # of three frames
+    assert story("IsNotDrawnYet", "first")["shadows"] == ["Ready 0", "Ready 2"]  # after two and after three frames
 
 
 def test_a_camera_draws_the_avatars_of_its_layers_alone(story: Story) -> None:

@@ -1,22 +1,17 @@
 """Clips that AvatarRenderer plays in a player loop of stand-ins."""
 
-import sys
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from component import RATE, SECOND, Story
-from csharp import ROOT
+from frame_bounds import FEWER_THAN, FRAME_ORDER
 from synthetic_avatar import synthetic_avatar
 from training import outside_of_training
 
 from mua.asset import write
 from mua.pose.resample import resample
-
-sys.path.append(str(ROOT / "tests" / "parity"))
-
-from frame_bounds import FEWER_THAN, FRAME_ORDER
 
 
 def test_a_clip_plays(story: Story) -> None:

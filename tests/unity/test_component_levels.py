@@ -1,6 +1,5 @@
 """Levels of detail of AvatarRenderer and the budget of several, in a player loop of stand-ins."""
 
-import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -8,21 +7,17 @@ from typing import Any
 import numpy as np
 import pytest
 from component import Story, counts
-from csharp import ROOT
+from frame_bounds import FRAME_ORDER
 from synthetic_avatar import synthetic_avatar
 
 from mua.asset import write
-
-sys.path.append(str(ROOT / "tests" / "parity"))
-
-from frame_bounds import FRAME_ORDER
 
 
 def test_the_level_follows_the_camera_or_what_is_asked_for(story: Story) -> None:
     reported, levels = story("ChangesLevel", "first"), counts(1)
     assert reported["distance"] == [str(levels[level]) for level in (0, 2, 0)]
     assert reported["asked"] == [str(levels[level]) for level in (1, 2, 0)]
-    assert reported["nearest"] == [str(levels[level]) for level in (0, 2, 0)]  # of two cameras, then one
+    assert reported["nearest"] == [str(levels[level]) for level in (0, 2, 0)]  # for two cameras, then for one
     assert reported["still"] == [str(len(FRAME_ORDER))]
     assert reported["geometry"] == [str(levels[0])]
     assert reported["log"] == []
@@ -42,7 +37,7 @@ def test_avatars_share_a_budget_the_nearest_first(story: Story) -> None:
     reported, first, second = story("SharesBudget", "first", "second"), counts(1), counts(2)
     assert reported["splats"] == [f"{first[i]} {second[j]}" for i, j in ((0, 0), (0, 1), (2, 2))]
     assert reported["one camera"] == [f"{first[0]} {second[1]}"]
-    assert reported["two cameras"] == [f"{first[1]} {second[0]}"]  # of which another one is nearer to the second
+    assert reported["two cameras"] == [f"{first[1]} {second[0]}"]  # another avatar is nearer to the second camera
     assert reported["fixed"] == [f"{first[2]} {second[0]}"] * 2
     assert reported["alone"] == [str(first[0])]  # what is not in view takes nothing off
     assert reported["later"] == [

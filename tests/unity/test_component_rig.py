@@ -1,20 +1,15 @@
 """Rigs that AvatarRenderer follows in a player loop of stand-ins."""
 
-import sys
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from component import SECOND, TRANSLATED, TURNED, Story
-from csharp import ROOT
+from frame_bounds import FRAME_ORDER
 from synthetic_avatar import synthetic_avatar
 
 from mua.asset import write
-
-sys.path.append(str(ROOT / "tests" / "parity"))
-
-from frame_bounds import FRAME_ORDER
 
 
 def test_a_joint_that_is_destroyed_returns_to_its_bind_pose(story: Story) -> None:

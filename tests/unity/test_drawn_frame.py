@@ -12,18 +12,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 import wgpu
-from csharp import PROGRAMS, ROOT, RUNTIME, CSharp
+from csharp import ROOT, RUNTIME, CSharp
 from drawn import DEPTH_FORMAT, Target, UnityDraw, rows
 from engine_shaders import Engine
 from packed_splats import colors_of, opacities_of, unpacked
-from recorded_frames import MIRROR, STAND_INS
+from recorded_frames import eye_lines
 from replay import Drawn, replay, value
 from shader_programs import VARIANTS, programs
 from synthetic_avatar import synthetic_avatar
 
 from mua.arrays import Array
 from mua.asset import write
-from mua.avatar.camera import EYE_DISTANCE, NEAR, Camera, orbit, stereo
+from mua.avatar.camera import EYE_DISTANCE, Camera, orbit, stereo
 from mua.avatar.decode import decode_clip_frame
 from mua.gpu import Device
 from mua.gpu.reflect import Constant
@@ -62,27 +62,6 @@ def eyes(bounds: Array, count: int) -> tuple[Camera, ...]:
     return left, replace(right, view=turn @ right.view)
 
 
-@pytest.fixture(scope="module")
-def frame_program(csharp: CSharp) -> Path:
-    engine = csharp.build([STAND_INS / "UnityEngine"], library=True)
-    file = csharp.build([RUNTIME / "Format"], library=True)
-    motion = csharp.build([RUNTIME / "Motion"], library=True, references=[file])
-    package = [*sorted(RUNTIME.glob("*.cs")), RUNTIME / "Kernels"]
-    return csharp.build(
-        [*package, PROGRAMS / "shared", PROGRAMS / "scenario", PROGRAMS / "FrameProgram.cs"],
-        references=[engine, file, motion],
-    )
-
-
-def seen_by(cameras: tuple[Camera, ...], instances: int) -> list[str]:
-    """The steps of a scenario that set eyes: Unity's matrices."""
-    lines = ["screen {} {} {} {}".format(*SCREEN, NEAR, instances)]
-    for camera in cameras:
-        numbers = np.concatenate([(camera.view @ MIRROR).ravel(), camera.projection.ravel()])
-        lines.append("eye " + " ".join(repr(float(number)) for number in numbers))
-    return lines
-
-
 def record(csharp: CSharp, program: Path, device: Device, folder: Path, *, count: int, instances: int) -> Scene:
     """The upper part of one avatar, seen close by `count` eyes after a frame in which all of it was seen."""
     avatar = synthetic_avatar(1)
@@ -93,8 +72,8 @@ def record(csharp: CSharp, program: Path, device: Device, folder: Path, *, count
     upper = np.stack([box.mean(axis=0), (box[0] + 3 * box[1]) / 4])
     cameras = eyes(upper, count)
     lines = [f"decode 0 {FRAME_AT + 1e-3!r} 0 0 0 0 0 0 1 1"]
-    lines += [*seen_by(eyes(box, count), instances), "sort all"]
-    lines += [*seen_by(cameras, instances), "sort upper", *(f"draw {mode}" for mode in MODES), ""]
+    lines += [*eye_lines(eyes(box, count), instances=instances), "sort all"]
+    lines += [*eye_lines(cameras, instances=instances), "sort upper", *(f"draw {mode}" for mode in MODES), ""]
     scenario.write_text("\n".join(lines))
     csharp.run(program, ROOT / "ComputeShaders", folder / "recording", scenario, file)
     drawn = dict(zip(MODES, replay(device, folder / "recording").draws, strict=True))
@@ -362,7 +341,8 @@ def test_a_linear_project_is_given_light(painter: Painter, mono: Scene, brightne
     expected[..., :3] *= light.max()
     found = painter.unity(drawn, space=())
     covered, channels = expected[..., 3] > 0, slice(3) if brightness < 1 else slice(4)
-    bound = 2.0**-9 * expected[covered][..., channels].max()  # of the expected colours' half floats
+    # Half a step of the half floats that the expected colours are stored in.
+    bound = 2.0**-9 * expected[covered][..., channels].max()
     assert np.abs(found - expected)[covered][..., channels].max() < bound
     with pytest.raises(AssertionError):
         agree(found, painter.player(mono)[0])

@@ -7,8 +7,8 @@ import check_engine_api
 import csharp_source
 import pytest
 from check_engine_api import Found, Used, look_up
-from csharp import CSharp
-from package_compiler import OLDEST, STAND_INS, engine_symbols
+from csharp import STAND_INS, CSharp
+from package_compiler import OLDEST, engine_symbols
 
 ENGINE = STAND_INS / "UnityEngine"
 

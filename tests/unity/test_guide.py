@@ -14,7 +14,6 @@ MEMBER = re.compile(r"avatar\.([A-Z]\w+)")
 COMMAND = re.compile(r"Mua\.Editor\.\w+\.\w+")
 WORD = re.compile(r"(?<!\w)(-mua[A-Z]\w+|MUA-[A-Z]+(?: [A-Z]+)?)")
 MARKER = re.compile(r"`(MUA [a-z ]+)`")
-FILE = re.compile(r"`(?:tests/unity/)?((?:tests|tools|docs)/[\w/]+\.\w+|test_\w+\.py)`")
 COMPONENT = "Mua.AvatarRenderer."
 
 
@@ -63,11 +62,6 @@ def test_messages_are_those_of_the_package(content: Content, message: str) -> No
     """Part by part: what stands between two `...`."""
     for part in message.split("..."):
         assert content.says(part.strip()), part
-
-
-@pytest.mark.parametrize("name", sorted(set(FILE.findall(GUIDE))))
-def test_files_exist(name: str) -> None:
-    assert (ROOT / name).is_file() or (ROOT / "tests" / "unity" / name).is_file()
 
 
 def test_every_test_is_in_the_readme_beside_it() -> None:

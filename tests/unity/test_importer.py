@@ -1,7 +1,6 @@
 """The editor imports sound and unsound files, shows them, and places avatars by menu and drop."""
 
 import io
-import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -9,20 +8,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 from csharp import PROGRAMS, ROOT, CSharp
-from malformed import DAMAGED, MALFORMED, malformed
+from package_compiler import Compiler, assemblies
 from PIL import Image
-from synthetic_avatar import synthetic_avatar, with_surface
+from synthetic_avatar import synthetic_avatar
 from training import outside_of_training
 
 from mua.asset import write
-from mua.asset.write import encode
 
-sys.path.append(str(Path(__file__).parent))
-
-from package_compiler import Compiler, assemblies
-
-Told = dict[str, list[list[str]]]
-Story = Callable[..., Told]
+Reports = dict[str, list[list[str]]]
+Story = Callable[..., Reports]
 
 
 @pytest.fixture(scope="module")
@@ -40,8 +34,8 @@ def program(csharp: CSharp) -> Path:
 
 @pytest.fixture
 def story(csharp: CSharp, program: Path) -> Story:
-    def tell(name: str, *files: Path) -> Told:
-        reported: Told = {"log": [], "dialog": [], "undo": [], "saved": [], "object": []}
+    def tell(name: str, *files: Path) -> Reports:
+        reported: Reports = {"log": [], "dialog": [], "undo": [], "saved": [], "object": []}
         for line in csharp.run(program, ROOT / "ComputeShaders", name, *files).splitlines():
             key, *values = line.split("\t")
             reported.setdefault(key, []).append(values)
@@ -87,22 +81,17 @@ def test_a_file_without_a_thumbnail_has_the_editors_own_icon(story: Story, tmp_p
     assert story("Inspects", path)["gui"][0] == ["title synthetic"]
 
 
-def test_an_unsound_file_becomes_an_asset_that_says_why(story: Story, tmp_path: Path) -> None:
-    """Every malformed file: one import error with file, field and value, no exception, and the reader's field."""
-    content = encode(with_surface(synthetic_avatar()), storage="i8")
-    bad = [malformed(content, edit) for _, _, edit in MALFORMED] + [damage(content) for _, _, damage in DAMAGED]
-    fields = [field for _, field, _ in [*MALFORMED, *DAMAGED]]
-    files = [tmp_path / f"{i}.muaavatar" for i in range(len(bad))]
-    for file, damaged in zip(files, bad, strict=True):
-        file.write_bytes(damaged)
-    reported = story("Imports", *files)
+def test_an_unsound_file_becomes_an_asset_that_says_why(story: Story, sound: Path) -> None:
+    """One import error with file, field and value, and no exception."""
+    avatar = synthetic_avatar()
+    write(sound, replace(avatar, name="x" * 20))
+    sound.write_bytes(sound.read_bytes().replace(b"x" * 20, b"\xff" * 20))
+    reported = story("Imports", sound)
     assert reported["log"] == []
-    for file, field, asset, [error] in zip(files, fields, reported["asset"], reported["error"], strict=True):
-        name, length, fault, parts, icon = asset
-        assert (name, length, parts, icon) == (file.stem, "0", "avatar", "")
-        assert fault.startswith(field + ": " if field else "")
-        assert error == f"MUA: {file}: {fault}."
-        assert len(fault) > len(field) + 10
+    [[name, length, fault, parts, icon]] = reported["asset"]
+    assert (name, length, parts, icon) == (sound.stem, "0", "avatar", "")
+    assert fault == "name: the text is not UTF-8"
+    assert reported["error"] == [[f"MUA: {sound}: {fault}."]]
 
 
 def test_an_empty_file_and_one_that_vanishes_say_so(story: Story, tmp_path: Path) -> None:
@@ -236,7 +225,8 @@ def test_a_component_is_scrubbed_in_its_inspector(story: Story, tmp_path: Path) 
     assert reported["clip"] == [["1", "True"]]
     assert scrubbed == f"popup nod of wave, nod; button Play; slider 0 of 0 to {last}"
     assert again == scrubbed.replace("slider 0", "slider 3")
-    assert reported["asked"] == [["1", "1"]] * 2  # of the editor that does not play: a frame and its picture, once
+    # An editor that does not play is asked once for a frame and its picture.
+    assert reported["asked"] == [["1", "1"]] * 2
     assert reported["frame"] == [["3"]]
     assert reported["playing"] == [["False"]]
     outside = 100 * outside_of_training(path, 3)

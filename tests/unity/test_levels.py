@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from csharp import PROGRAMS, ROOT, RUNTIME, CSharp
+from csharp import PROGRAMS, ROOT, CSharp
 from synthetic_avatar import empty_avatar, sparse_avatar, synthetic_avatar
 
 from mua.asset.avatar import Avatar
@@ -18,7 +18,6 @@ from mua.avatar.coarser import coarsest, texel_length
 from mua.kernels.inverse_dwt import texel_tiles, upsampling_taps
 from mua.kernels.splat_project import pack_texels
 
-STAND_INS = Path(__file__).parent / "stand_ins"
 CASES = json.loads((ROOT / "tests" / "golden" / "level_choice.json").read_text())
 TYPES = {"texels": "<i4", "triangles": "<i4", "barycentrics": "<f4", "geometry": "<f4", "appearance": "<f4"}
 TYPES["one_sided"] = "?"
@@ -26,11 +25,7 @@ TYPES["one_sided"] = "?"
 
 @pytest.fixture(scope="module")
 def program(csharp: CSharp) -> Path:
-    file = csharp.build([RUNTIME / "Format"], library=True, name="Mua.Format")
-    engine = csharp.build([STAND_INS / "UnityEngine"], library=True, name="UnityEngine")
-    motion = csharp.build([RUNTIME / "Motion"], library=True, name="Mua.Motion", references=[file])
-    sources = [*sorted(RUNTIME.glob("*.cs")), RUNTIME / "Kernels", PROGRAMS / "LevelProgram.cs"]
-    return csharp.build(sources, references=[engine, file, motion])
+    return csharp.runtime(PROGRAMS / "LevelProgram.cs")
 
 
 @pytest.mark.parametrize("storage", ["f32", "f16", "i8"])
@@ -65,8 +60,8 @@ def test_a_wavelet_of_many_taps_has_no_levels(csharp: CSharp, program: Path, tmp
 def assert_levels_alike(csharp: CSharp, program: Path, path: Path, avatar: Avatar, storage: Storage) -> None:
     write(path, avatar, storage=storage)
     avatar = read(path)
-    said = iter(csharp.run(program, path).splitlines())
-    assert float(next(said).split()[1]) == pytest.approx(texel_length(avatar), rel=1e-12)
+    printed = iter(csharp.run(program, path).splitlines())
+    assert float(next(printed).split()[1]) == pytest.approx(texel_length(avatar), rel=1e-12)
     for number in range(coarsest(avatar) + 1):
         level = avatar.at_level(number)
         texels = level.rig.texels
@@ -78,19 +73,19 @@ def assert_levels_alike(csharp: CSharp, program: Path, path: Path, avatar: Avata
             "appearance": level.appearance.static,
             "one_sided": np.zeros(len(texels.texels), bool) if texels.one_sided is None else texels.one_sided,
         }
-        assert next(said).split() == ["level", str(number), str(texels.size), str(len(texels.texels))]
+        assert next(printed).split() == ["level", str(number), str(texels.size), str(len(texels.texels))]
         for name, values in expected.items():
-            word, _, found = next(said).partition(" ")
+            word, _, found = next(printed).partition(" ")
             assert word == name
             numbers = np.frombuffer(bytes.fromhex(found), TYPES[name]).reshape(values.shape)
             np.testing.assert_array_equal(numbers, values, err_msg=f"{number} {name}")
-        tiles, packed = (np.frombuffer(bytes.fromhex(next(said).split(" ")[1]), "<u4") for _ in range(2))
+        tiles, packed = (np.frombuffer(bytes.fromhex(next(printed).split(" ")[1]), "<u4") for _ in range(2))
         np.testing.assert_array_equal(tiles, texel_tiles(texels.texels, texels.size)[0])
         places = pack_texels(texels.triangles, texels.barycentrics, texels.one_sided).ravel().astype(np.int64)
         apart = np.abs(packed - places)  # means of barycentrics may round to another step
         assert number or not apart.any()
         assert ((apart == 0) | (np.arange(len(apart)) % 2 == 1) & np.isin(apart, [1, 1 << 16, (1 << 16) + 1])).all()
-    assert list(said) == []
+    assert list(printed) == []
 
 
 @pytest.mark.parametrize("coarser", [0, 1, 2])
@@ -100,18 +95,18 @@ def test_levels_without_details_are_the_filter_of_python(
 ) -> None:
     """Also where zeros begin or end the taps of a level."""
     taps = np.concatenate([np.zeros(before), np.arange(1.0, 5) / 7, np.zeros(2 - before % 2)])
-    said = csharp.run(program, "upsampling", "2", str(coarser), ",".join(map(repr, taps.tolist()))).splitlines()
+    printed = csharp.run(program, "upsampling", "2", str(coarser), ",".join(map(repr, taps.tolist()))).splitlines()
     expected, delay = upsampling_taps(taps, 2, coarser)
-    assert said[0].split()[1:] == [str(delay), *map(str, expected.shape)]
-    found = np.frombuffer(bytes.fromhex(said[1].split()[1]), "<f4")
+    assert printed[0].split()[1:] == [str(delay), *map(str, expected.shape)]
+    found = np.frombuffer(bytes.fromhex(printed[1].split()[1]), "<f4")
     np.testing.assert_allclose(found, expected.ravel(), rtol=1e-6)
 
 
 def test_the_table_that_both_players_choose_by(csharp: CSharp, program: Path, tmp_path: Path) -> None:
     lines = tmp_path / "cases.txt"
     lines.write_text("".join(line_of(case) + "\n" for case in CASES))
-    said = [[int(level) for level in line.split()[1:]] for line in csharp.run(program, "choose", lines).splitlines()]
-    assert dict(zip([case["name"] for case in CASES], said, strict=True)) == {c["name"]: c["levels"] for c in CASES}
+    printed = [[int(level) for level in line.split()[1:]] for line in csharp.run(program, "choose", lines).splitlines()]
+    assert dict(zip([case["name"] for case in CASES], printed, strict=True)) == {c["name"]: c["levels"] for c in CASES}
 
 
 def line_of(case: dict) -> str:

@@ -35,7 +35,7 @@ ROOM = 1 << 29  # bytes that reading and decoding one of them may take here: 5,0
 CSHARP_ROOM = 4  # times the file's size that the C# reader may take: 40 clips of 524 bytes take five times their own
 WORDS = 20_000  # bytes of a refusal's words
 WEB_ROOM = 1 << 29  # bytes that Node and its reading of all these files may take at once
-CLIPS = 3  # of a file that are decoded; a mutant may hold one many times
+CLIPS = 3  # at most so many of a file are decoded; a mutant may hold one many times
 
 
 @pytest.fixture

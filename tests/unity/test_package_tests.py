@@ -6,7 +6,7 @@ from pathlib import Path
 
 import gen_golden
 import pytest
-from csharp import PROGRAMS, ROOT, CSharp
+from csharp import PROGRAMS, ROOT, CSharp, by_name
 from package_compiler import PACKAGE, Compiler
 from replay import replay
 
@@ -16,8 +16,8 @@ KERNELS = ROOT / "ComputeShaders"
 CASES = 32
 ASSEMBLIES = ("UnityEngine", "UnityEditor", "UnityEngine.TestRunner", "nunit.framework", "Mua.Format", "Mua.Motion")
 OURS = ("Mua.Avatar", "Mua.Avatar.SelfTest", "Mua.Avatar.Editor", "Mua.Avatar.Tests", "Mua.Avatar.Editor.Tests")
-Told = dict[str, list[str]]
-Story = Callable[..., Told]
+Reports = dict[str, list[str]]
+Story = Callable[..., Reports]
 
 
 @pytest.fixture(scope="module")
@@ -30,27 +30,24 @@ def program(csharp: CSharp) -> Path:
 
 @pytest.fixture
 def story(csharp: CSharp, program: Path) -> Story:
-    def tell(name: str, *, package: object = PACKAGE, recording: object = "-", answered: object = "-") -> Told:
-        reported: Told = {}
-        for line in csharp.run(program, package, KERNELS, recording, answered, name).splitlines():
-            key, _, value = line.partition("\t")
-            reported.setdefault(key, []).append(value)
+    def tell(name: str, *, package: object = PACKAGE, recording: object = "-", answered: object = "-") -> Reports:
+        reported = by_name(csharp.run(program, package, KERNELS, recording, answered, name))
         assert reported["alive"] == ["0"], reported
         return reported
 
     return tell
 
 
-def outcomes(reported: Told) -> dict[str, str]:
+def outcomes(reported: Reports) -> dict[str, str]:
     """What came of each test."""
     return {key.removeprefix("test "): value for key, (value, *_) in reported.items() if key.startswith("test ")}
 
 
 @pytest.fixture
-def answered(device: Device, tmp_path: Path) -> Callable[[Story, str], Told]:
+def answered(device: Device, tmp_path: Path) -> Callable[[Story, str], Reports]:
     """A story reported again, with what its recording makes of the buffers that it reads."""
 
-    def tell(story: Story, name: str) -> Told:
+    def tell(story: Story, name: str) -> Reports:
         recording, folder = tmp_path / "recorded", tmp_path / "answers"
         story(name, recording=recording)
         folder.mkdir()
@@ -61,7 +58,7 @@ def answered(device: Device, tmp_path: Path) -> Callable[[Story, str], Told]:
     return tell
 
 
-def test_every_edit_mode_test_passes(story: Story, answered: Callable[[Story, str], Told]) -> None:
+def test_every_edit_mode_test_passes(story: Story, answered: Callable[[Story, str], Reports]) -> None:
     found = outcomes(answered(story, "EditMode"))
     assert len(found) == CASES + 1
     assert set(found.values()) == {"passed"}
@@ -91,7 +88,7 @@ def test_every_play_mode_test_passes(story: Story) -> None:
     assert set(found.values()) == {"passed"}, found
 
 
-def test_the_menu_says_how_many_cases_passed(story: Story, answered: Callable[[Story, str], Told]) -> None:
+def test_the_menu_says_how_many_cases_passed(story: Story, answered: Callable[[Story, str], Reports]) -> None:
     reported = answered(story, "Menu")
     assert reported["dialog"] == [f"{CASES} of {CASES} cases passed on stand-in."]
     assert reported["Log"][-1] == f"MUA-SELFTEST editor PASS {CASES}/{CASES}"

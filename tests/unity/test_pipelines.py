@@ -90,7 +90,7 @@ def test_an_orthographic_camera_draws_no_splats(recorded: Recorded) -> None:
 
 
 def test_another_pipeline_is_told_once_and_left_alone(recorded: Recorded) -> None:
-    *before, last = recorded.said["log"]
+    *before, last = recorded.reported["log"]
     assert "OtherPipelineAsset cannot draw avatars" in last
     assert len(before) == (recorded.mode.pipeline == "urp")
     assert not [step for step in recorded.steps("other pipeline") if not step.startswith("submit")]
@@ -108,7 +108,7 @@ def test_a_device_without_indirect_draws_is_told_how_many(recorded: Recorded) ->
 def test_avatars_that_go_while_a_camera_is_rendered_are_not_drawn(recorded: Recorded) -> None:
     assert recorded.draws("destroyed") == recorded.draws("empty") == []
     assert recorded.steps("empty") == recorded.mode.unseen("main")[:1]
-    assert (recorded.said["alive"], recorded.said["attached"]) == (["0"], ["0"])
+    assert (recorded.reported["alive"], recorded.reported["attached"]) == (["0"], ["0"])
 
 
 def test_an_avatar_that_goes_takes_its_draws_along(recorded: Recorded) -> None:
@@ -122,4 +122,4 @@ def test_an_avatar_that_goes_takes_its_draws_along(recorded: Recorded) -> None:
 
 
 def test_frames_allocate_nothing(recorded: Recorded) -> None:
-    assert recorded.said["allocated"] == ["0"]
+    assert recorded.reported["allocated"] == ["0"]

@@ -1,13 +1,13 @@
 """What only URP does with cameras, in every stereo mode: scales, stacks, culling, newer editors; and the picture."""
 
 import itertools
-import sys
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
-from csharp import ROOT, CSharp
+from csharp import CSharp
+from frame_bounds import LEAST_PSNR, psnr
 from pipelines import EYE, MODES, MOVED, Mode, Recorded, built, cameras, label, run, step_of
 from replay import Drawn, replay
 from synthetic_avatar import synthetic_avatar
@@ -16,10 +16,6 @@ from mua.avatar.decode import decode_clip_frame
 from mua.avatar.rendering import render_premultiplied
 from mua.gpu import Device
 from mua.player.draw import SortedSplats, SplatRenderer, draw_image, image_format
-
-sys.path.append(str(ROOT / "tests" / "parity"))
-
-from frame_bounds import LEAST_PSNR, psnr
 
 
 @pytest.mark.parametrize(
@@ -61,7 +57,7 @@ def test_compatibility_mode_is_refused_once(universal: Recorded) -> None:
     assert [step_of(event) for frame in universal.frames("compatibility") for event in frame] == [
         f"submit {name}" for _ in range(2 * universal.mode.passes) for name in ("main", "other")
     ]
-    assert sum("Compatibility Mode" in line for line in universal.said["log"]) == 1
+    assert sum("Compatibility Mode" in line for line in universal.reported["log"]) == 1
 
 
 @pytest.mark.parametrize("mode", [mode for mode in MODES if mode.pipeline == "urp"], ids=label)

@@ -8,7 +8,7 @@ def test_an_avatar_takes_a_rigs_place_and_gives_it_back(csharp: CSharp) -> None:
     compiler = Compiler(csharp, "pc", packages=False)
     references = [compiler.built(name) for name in ("UnityEngine", "Mua.Format", "Mua.Motion", "Mua.Avatar")]
     sources = [*assemblies()["Mua.Samples.PosedByRig"].sources(), PROGRAMS / "PosedByRigProgram.cs"]
-    said = csharp.run(csharp.build(sources, name="PosedByRigProgram", references=references))
-    assert dict(line.split("\t") for line in said.splitlines()) == dict.fromkeys(
+    printed = csharp.run(csharp.build(sources, name="PosedByRigProgram", references=references))
+    assert dict(line.split("\t") for line in printed.splitlines()) == dict.fromkeys(
         ("posed", "hidden", "follows", "released", "quiet"), "True"
     )

@@ -1,31 +1,11 @@
 """The package's own frames, run by mono over stand-ins that record them and replayed on Vulkan, against decode()."""
 
-import sys
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 import pytest
-from csharp import PROGRAMS, ROOT, RUNTIME, CSharp
-from replay import Replayed, replay
-from synthetic_avatar import synthetic_avatar, with_random_poses
-from training import outside_of_training
-
-from mua import rotation
-from mua.arrays import Array
-from mua.asset import read, write
-from mua.asset.avatar import Avatar
-from mua.asset.tensors import Storage
-from mua.avatar.camera import EYE_DISTANCE, NEAR, Camera, orbit, stereo
-from mua.avatar.decode import Splats, decode_clip_frame
-from mua.avatar.rendering import render_premultiplied
-from mua.gpu import Device
-from mua.kernels.splat_project import HIDDEN, LAST_KEY
-from mua.player.draw import SortedSplats, SplatRenderer, draw_image, image_format
-from mua.rig.bounds import root_positions
-
-sys.path.append(str(ROOT / "tests" / "parity"))
-
+from csharp import ROOT, CSharp
 from frame_bounds import (
     COLOR_BOUND,
     FEWER_THAN,
@@ -40,11 +20,27 @@ from frame_errors import exact_colors, exact_depths
 from golden_sorting import BLOCK
 from joined_splats import joined, moved
 from packed_splats import colors_of, opacities_of, unpacked
-from recorded_frames import MIRROR, STAND_INS, place_of
+from recorded_frames import eye_lines, place_of
+from replay import Replayed, replay
 from splat_rounding import exact_keys
+from synthetic_avatar import synthetic_avatar, with_random_poses
+from training import outside_of_training
+
+from mua import rotation
+from mua.arrays import Array
+from mua.asset import read, write
+from mua.asset.avatar import Avatar
+from mua.asset.tensors import Storage
+from mua.avatar.camera import EYE_DISTANCE, Camera, orbit, stereo
+from mua.avatar.decode import Splats, decode_clip_frame
+from mua.avatar.rendering import render_premultiplied
+from mua.gpu import Device
+from mua.kernels.splat_project import HIDDEN, LAST_KEY
+from mua.player.draw import SortedSplats, SplatRenderer, draw_image, image_format
+from mua.rig.bounds import root_positions
 
 POSES = 12
-VISIBLE_WORD = 4  # of `arguments`
+VISIBLE_WORD = 4  # its place in `arguments`
 PLACES = (  # Unity's position, then rotation (x, y, z, w), then size
     (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0),
     (0.35, 0.1, -0.2, 0.1, 0.5, -0.1, 0.85446, 1.7),
@@ -58,9 +54,9 @@ class Shot:
 
     label: str
     seconds: tuple[float, ...]
-    frames: tuple[int, ...]  # of the clip, that these seconds mean
+    frames: tuple[int, ...]  # the frames of the clip that these seconds mean
     eyes: int
-    levels: tuple[int, ...] = (0, 0, 0)  # of detail
+    levels: tuple[int, ...] = (0, 0, 0)  # levels of detail
 
 
 FIRST = Shot("first", (0.0, 0.0, 0.0), (0, 0, 0), 1)
@@ -69,18 +65,6 @@ COARSER = Shot("coarser", (1.2 / 24, 4.2 / 24, 6.2 / 24), (1, 4, 6), 2, (1, 0, 2
 COARSEST = Shot("coarsest", (2.2 / 24, 5.2 / 24, 3.2 / 24), (2, 5, 3), 1, (2, 1, 1))
 WRAPPED = Shot("wrapped", (7.2 / 24, 12.2 / 24, 70.2 / 24), (0, 5, 0), 1)  # clips of 7 frames at 24 Hz
 SHOTS = (FIRST, LATER, COARSER, COARSEST, WRAPPED)
-
-
-@pytest.fixture(scope="module")
-def program(csharp: CSharp) -> Path:
-    engine = csharp.build([STAND_INS / "UnityEngine"], library=True)
-    file = csharp.build([RUNTIME / "Format"], library=True)
-    motion = csharp.build([RUNTIME / "Motion"], library=True, references=[file])
-    package = [*sorted(RUNTIME.glob("*.cs")), RUNTIME / "Kernels"]
-    return csharp.build(
-        [*package, PROGRAMS / "shared", PROGRAMS / "scenario", PROGRAMS / "FrameProgram.cs"],
-        references=[engine, file, motion],
-    )
 
 
 def standing(splats: Splats, numbers: tuple[float, ...]) -> Splats:
@@ -94,7 +78,7 @@ class Recorded:
     """A scenario, played by the package and replayed; and its reference."""
 
     def __init__(
-        self, csharp: CSharp, program: Path, device: Device, folder: Path, avatars: list[Avatar], storage: Storage
+        self, csharp: CSharp, frame_program: Path, device: Device, folder: Path, avatars: list[Avatar], storage: Storage
     ) -> None:
         files = [folder / f"{index}.muaavatar" for index in range(len(avatars))]
         for file, avatar in zip(files, avatars, strict=True):
@@ -104,8 +88,8 @@ class Recorded:
         self.cameras = {shot.label: self._cameras(shot) for shot in SHOTS}
         scenario = folder / "scenario.txt"
         scenario.write_text("".join(self._lines(shot) for shot in SHOTS) + "again 200\n")
-        said = csharp.run(program, ROOT / "ComputeShaders", folder / "recording", scenario, *files)
-        self.said = [line.split() for line in said.splitlines()]
+        printed = csharp.run(frame_program, ROOT / "ComputeShaders", folder / "recording", scenario, *files)
+        self.printed = [line.split() for line in printed.splitlines()]
         self.replayed: Replayed = replay(device, folder / "recording")
 
     def _exact(self, shot: Shot) -> Splats:
@@ -134,11 +118,7 @@ class Recorded:
         return (camera,) if shot.eyes == 1 else stereo(camera, EYE_DISTANCE)
 
     def _lines(self, shot: Shot) -> str:
-        cameras = self.cameras[shot.label]
-        lines = ["screen {} {} {} 1".format(*cameras[0].screen, NEAR)]
-        for camera in cameras:
-            numbers = np.concatenate([(camera.view @ MIRROR).ravel(), camera.projection.ravel()])
-            lines.append("eye " + " ".join(repr(float(number)) for number in numbers))
+        lines = eye_lines(self.cameras[shot.label])
         for index, (seconds, place, level) in enumerate(zip(shot.seconds, PLACES, shot.levels, strict=True)):
             if index < len(self.avatars):
                 lines.append(f"decode {index} {seconds!r} " + " ".join(map(repr, (*place, level))))
@@ -160,7 +140,7 @@ class Recorded:
 def recorded(
     request: pytest.FixtureRequest,
     csharp: CSharp,
-    program: Path,
+    frame_program: Path,
     device: Device,
     tmp_path_factory: pytest.TempPathFactory,
 ) -> Recorded:
@@ -170,7 +150,7 @@ def recorded(
         part(synthetic_avatar(2, wavelet="bior3.1"), slice(0, 301)),  # whose filter of 4 taps has an odd delay
         part(synthetic_avatar(3, levels=5), slice(100, 457)),  # whose lowest plane is a single sample
     ]
-    return Recorded(csharp, program, device, tmp_path_factory.mktemp("recorded"), avatars[:count], storage)
+    return Recorded(csharp, frame_program, device, tmp_path_factory.mktemp("recorded"), avatars[:count], storage)
 
 
 @pytest.mark.parametrize("shot", SHOTS, ids=lambda shot: shot.label)
@@ -201,7 +181,7 @@ def test_the_order_is_from_back_to_front_through_all_avatars(recorded: Recorded,
 
 
 def test_a_crowd_of_more_splats_than_a_group_sorts_is_in_order_too(
-    csharp: CSharp, program: Path, device: Device, tmp_path: Path
+    csharp: CSharp, frame_program: Path, device: Device, tmp_path: Path
 ) -> None:
     avatar, lines = synthetic_avatar(1), []
     texels = len(avatar.rig.texels.texels)
@@ -212,11 +192,9 @@ def test_a_crowd_of_more_splats_than_a_group_sorts_is_in_order_too(
         place = (0.1 * (index % 3), 0.0, 0.15 * index, 0.0, 0.0, 0.0, 1.0, 1.0)
         lines.append(f"decode {index} {0.1 * index!r} " + " ".join(map(repr, (*place, 0))))
     camera = orbit(np.array([[-1, -1, -3], [1, 2, 1]]), screen=(64, 48), azimuth=0.7, elevation=0.3)
-    numbers = np.concatenate([(camera.view @ MIRROR).ravel(), camera.projection.ravel()])
-    eye = "eye " + " ".join(repr(float(number)) for number in numbers)
     scenario = tmp_path / "scenario.txt"
-    scenario.write_text("\n".join([f"screen 64 48 {NEAR} 1", eye, *lines, "sort crowd\n"]))
-    csharp.run(program, ROOT / "ComputeShaders", tmp_path / "recording", scenario, *files)
+    scenario.write_text("\n".join([*eye_lines([camera]), *lines, "sort crowd\n"]))
+    csharp.run(frame_program, ROOT / "ComputeShaders", tmp_path / "recording", scenario, *files)
     kept = replay(device, tmp_path / "recording").kept
     keys = kept["crowd keys"].view(np.uint16)
     visible = np.flatnonzero(keys != HIDDEN)
@@ -227,7 +205,7 @@ def test_a_crowd_of_more_splats_than_a_group_sorts_is_in_order_too(
 
 
 def test_poses_of_all_kinds_are_those_of_the_reference(
-    csharp: CSharp, program: Path, device: Device, tmp_path: Path
+    csharp: CSharp, frame_program: Path, device: Device, tmp_path: Path
 ) -> None:
     """Random angles of all joints, of an avatar that was trained on hardly any motion: far outside of it."""
     file = tmp_path / "wild.muaavatar"
@@ -237,15 +215,13 @@ def test_poses_of_all_kinds_are_those_of_the_reference(
     exact = [decode_clip_frame(avatar, avatar.clips[0], frame=frame, dtype=np.float64) for frame in range(POSES)]
     spans = [np.stack([splats.centres.min(axis=0), splats.centres.max(axis=0)]) for splats in exact]
     camera = orbit(np.stack([np.min(spans, axis=(0, 1)), np.max(spans, axis=(0, 1))]), screen=(64, 48))
-    lines = ["screen {} {} {} 1".format(*camera.screen, NEAR)]
-    numbers = np.concatenate([(camera.view @ MIRROR).ravel(), camera.projection.ravel()])
-    lines.append("eye " + " ".join(repr(float(number)) for number in numbers))
+    lines = eye_lines([camera])
     for frame in range(POSES):
         place = " ".join(map(repr, (*PLACES[0], 0)))
         lines += [f"decode 0 {(frame + 0.2) / 24!r} {place}", f"sort {frame}"]
     scenario = tmp_path / "scenario.txt"
     scenario.write_text("\n".join([*lines, ""]))
-    csharp.run(program, ROOT / "ComputeShaders", tmp_path / "recording", scenario, file)
+    csharp.run(frame_program, ROOT / "ComputeShaders", tmp_path / "recording", scenario, file)
     kept = replay(device, tmp_path / "recording").kept
     for frame, splats in enumerate(exact):
         found = unpacked(kept[f"{frame} splats"])[: len(splats)]
@@ -274,7 +250,7 @@ def test_the_dispatches_are_those_of_the_desktop_player(recorded: Recorded) -> N
 
 
 def test_frames_allocate_nothing_and_leave_nothing_behind(recorded: Recorded) -> None:
-    said = {words[0]: words[1:] for words in recorded.said}
-    assert said["made"] == ["0"]
-    assert said["alive"] == ["0"]
-    assert said["allocated"] == ["0"]
+    printed = {words[0]: words[1:] for words in recorded.printed}
+    assert printed["made"] == ["0"]
+    assert printed["alive"] == ["0"]
+    assert printed["allocated"] == ["0"]

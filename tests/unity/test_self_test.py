@@ -2,14 +2,16 @@
 
 import json
 import shutil
-import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import gen_golden
 import pytest
-from csharp import PROGRAMS, ROOT, RUNTIME, CSharp
+from csharp import PROGRAMS, ROOT, RUNTIME, CSharp, by_name
+from golden import read_golden
+from mutations import FAULTS, Fault
 from replay import replay
 from synthetic_avatar import synthetic_avatar
 
@@ -19,18 +21,11 @@ from mua.deploy.player import answers
 from mua.errors import InputError
 from mua.gpu import Device
 
-sys.path.append(str(ROOT / "tests" / "parity"))
-
-import gen_golden
-from golden import read_golden
-from mutations import FAULTS, Fault
-
-STAND_INS = Path(__file__).parent / "stand_ins"
 KERNELS = ROOT / "ComputeShaders"
 RUN = "0123abcd"
 SELF_TEST = ("-muaSelfTest", "-muaRun", RUN)
 CASES = len(read_golden())
-SECONDS, RATE = 3, 72  # of a bench, and frames a second of the program's player loop
+SECONDS, RATE = 3, 72  # a bench's length, and frames a second of the program's player loop
 BENCH = ("-muaBench", "first", "-muaSeconds", str(SECONDS), "-muaRun", RUN)
 VRAPI = "I/VrApi (1): FPS=72/72,Stale=0,App=4.5ms"
 CAUGHT = {  # by kernel, a fault that its golden cases show
@@ -47,12 +42,12 @@ CAUGHT = {  # by kernel, a fault that its golden cases show
 class Ran:
     """What the program printed: values by name, messages of the log by kind."""
 
-    said: dict[str, list[str]]
+    reports: dict[str, list[str]]
 
     @property
     def cases(self) -> list[self_test.Case]:
         """As mua-deploy reads them from the log."""
-        return self_test.collect(answers(self.said["Log"], self_test.MARK, RUN))
+        return self_test.collect(answers(self.reports["Log"], self_test.MARK, RUN))
 
     @property
     def failed(self) -> dict[str, str]:
@@ -64,15 +59,8 @@ Story = Callable[..., Ran]
 
 @pytest.fixture(scope="module")
 def program(csharp: CSharp) -> Path:
-    engine = csharp.build([STAND_INS / "UnityEngine"], library=True, name="UnityEngine")
-    file = csharp.build([RUNTIME / "Format"], library=True, name="Mua.Format")
-    motion = csharp.build([RUNTIME / "Motion"], library=True, name="Mua.Motion", references=[file])
-    sources = [*sorted(RUNTIME.glob("*.cs")), RUNTIME / "Kernels", RUNTIME / "SelfTest"]
-    return csharp.build(
-        [*sources, PROGRAMS / "shared", PROGRAMS / "SelfTestProgram.cs"],
-        name="SelfTestProgram",
-        references=[engine, file, motion],
-    )
+    program = PROGRAMS / "SelfTestProgram.cs"
+    return csharp.runtime(RUNTIME / "SelfTest", PROGRAMS / "shared", program, name="SelfTestProgram")
 
 
 @pytest.fixture
@@ -92,13 +80,10 @@ def story(csharp: CSharp, program: Path, streaming: Path) -> Story:
     def tell(
         name: str = "Plays", *words: str, kernels: Path = KERNELS, recording: object = "-", answered: object = "-"
     ) -> Ran:
-        said: dict[str, list[str]] = {"Log": []}
         printed = csharp.run(program, kernels, streaming, recording, answered, name, *(words or SELF_TEST))
-        for line in printed.splitlines():
-            key, _, value = line.partition("\t")
-            said.setdefault(key, []).append(value)
-        assert (said["alive"], said["requests"]) == (["0"], ["0"]), said
-        return Ran(said)
+        reports = {"Log": [], **by_name(printed)}
+        assert (reports["alive"], reports["requests"]) == (["0"], ["0"]), reports
+        return Ran(reports)
 
     return tell
 
@@ -119,8 +104,8 @@ def test_every_case_passes(device: Device, story: Story, tmp_path: Path, name: s
     ran = story(name, answered=answer(device, recording))
     assert ran.failed == {}
     assert len(ran.cases) == CASES
-    assert ran.said["Log"][-1] == f"MUA-SELFTEST {RUN} PASS {CASES}/{CASES}"
-    assert ran.said["exit"] == ["0"]
+    assert ran.reports["Log"][-1] == f"MUA-SELFTEST {RUN} PASS {CASES}/{CASES}"
+    assert ran.reports["exit"] == ["0"]
 
 
 @pytest.mark.parametrize("kernel", CAUGHT)
@@ -137,7 +122,7 @@ def test_a_fault_of_a_kernel_fails_its_cases(
     ran = story(answered=answer(device, recording))
     assert {name.split("/")[0] for name in ran.failed} == {kernel}
     assert all("wanted" in what for what in ran.failed.values())
-    assert ran.said["exit"] == ["1"]
+    assert ran.reports["exit"] == ["1"]
 
 
 def test_a_case_is_named_by_entry_point_and_content(story: Story) -> None:
@@ -151,7 +136,7 @@ def test_the_player_tests_every_kernel_that_has_golden_files(story: Story) -> No
 
 
 def test_a_device_is_described_in_a_line(story: Story) -> None:
-    described = story().said["Log"][0]
+    described = story().reports["Log"][0]
     assert described.startswith("MUA device: stand-in; ")
     assert "Vulkan" in described
 
@@ -257,16 +242,16 @@ def test_a_golden_file_that_is_cut_fails_once(story: Story, streaming: Path) -> 
 
 
 def test_a_player_without_arguments_tests_nothing(story: Story) -> None:
-    assert story("Plays", "-another").said["Log"] == []
+    assert story("Plays", "-another").reports["Log"] == []
 
 
 @pytest.mark.parametrize("name", ["Plays", "HasScene"])
 def test_a_bench_says_when_samples_count(story: Story, name: str) -> None:
     ran = story(name, *BENCH)
-    lines = [line for said in ran.said["Log"] for line in (VRAPI, said)]
+    lines = [line for reports in ran.reports["Log"] for line in (VRAPI, reports)]
     assert len(bench.collect(lines, RUN)) == 1
-    assert ran.said["Log"][-2:] == [f"MUA-BENCH {RUN} START first", f"MUA-BENCH {RUN} END"]
-    assert (ran.said["over"], ran.said["exit"]) == (["True"], ["0"])
+    assert ran.reports["Log"][-2:] == [f"MUA-BENCH {RUN} START first", f"MUA-BENCH {RUN} END"]
+    assert (ran.reports["over"], ran.reports["exit"]) == (["True"], ["0"])
 
 
 def test_a_bench_measures_every_frame(story: Story, streaming: Path) -> None:
@@ -282,8 +267,8 @@ def test_a_bench_measures_every_frame(story: Story, streaming: Path) -> None:
 
 def test_a_bench_whose_report_cannot_be_written_says_so_and_ends(story: Story) -> None:
     ran = story("CannotWrite", *BENCH)
-    assert (ran.said["over"], ran.said["exit"]) == (["True"], ["0"])
-    [warned] = ran.said["Warning"]
+    assert (ran.reports["over"], ran.reports["exit"]) == (["True"], ["0"])
+    [warned] = ran.reports["Warning"]
     assert "bench.json could not be written: " in warned
 
 
@@ -295,21 +280,21 @@ def test_a_device_without_timings_leaves_them_out(story: Story, streaming: Path)
 
 def test_a_bench_takes_the_avatar_of_the_scene_alone(story: Story) -> None:
     ran = story("HasScene", *BENCH)
-    assert ran.said["shown"] == ["2"]
-    assert ran.said["on"] == ["True False 1"]
+    assert ran.reports["shown"] == ["2"]
+    assert ran.reports["on"] == ["True False 1"]
 
 
 @pytest.mark.parametrize("name", ["Plays", "LooksDown"])
 def test_a_bench_has_the_avatar_before_the_camera(story: Story, name: str) -> None:
-    middle = [float(word) for word in story(name, *BENCH).said["middle"][0].split()]
+    middle = [float(word) for word in story(name, *BENCH).reports["middle"][0].split()]
     assert middle == pytest.approx([0, 0, 2], abs=0.3)  # the clip moves it
 
 
 def failure(ran: Ran) -> str:
     """What mua-deploy tells of a bench that failed."""
-    assert (ran.said["over"], ran.said["exit"]) == (["True"], ["1"])
+    assert (ran.reports["over"], ran.reports["exit"]) == (["True"], ["1"])
     with pytest.raises(InputError) as raised:
-        bench.collect(ran.said["Log"], RUN)
+        bench.collect(ran.reports["Log"], RUN)
     return str(raised.value)
 
 

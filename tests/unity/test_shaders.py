@@ -44,9 +44,9 @@ def test_every_variant_compiles_with_the_engines_own_includes(tmp_path: Path, en
     path = engine.write(program, tmp_path)
     for defines in ENGINE_VARIANTS:
         for entry, stage in ((program.vertex, "vert"), (program.fragment, "frag")):
-            compiled, said = engine.bytecode(path, entry, stage, defines)
-            assert compiled.is_file(), f"{entry} {defines}: {said}"
-            assert said == [], f"{entry} {defines}"
+            compiled, printed = engine.bytecode(path, entry, stage, defines)
+            assert compiled.is_file(), f"{entry} {defines}: {printed}"
+            assert printed == [], f"{entry} {defines}"
 
 
 @pytest.mark.parametrize("program", PROGRAMS, ids=str)
@@ -82,7 +82,7 @@ def test_the_eye_the_rows_and_the_screen_come_from_one_place(program: Program) -
 
 @pytest.mark.parametrize("program", [program for program in PROGRAMS if program.name != "ShadowCaster"], ids=str)
 def test_every_stage_is_told_its_eye_first_and_tells_the_next(program: Program) -> None:
-    assert re.search(r"\{\s*UNITY_SETUP_INSTANCE_ID\(attributes\);\n", program.text)  # of the entry or what it calls
+    assert re.search(r"\{\s*UNITY_SETUP_INSTANCE_ID\(attributes\);\n", program.text)  # in the entry or what it calls
     assert _body(program.text, program.fragment).startswith("UNITY_SETUP_STEREO_EYE_INDEX_POST_VERTEX(")
     assert "UNITY_INITIALIZE_VERTEX_OUTPUT_STEREO(varyings);\n" in program.text
 

@@ -1,23 +1,19 @@
 """AvatarRenderer spreads a decode over displayed frames: what each shows, bit for bit against decodes at once."""
 
 import json
-import sys
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import pytest
 from csharp import ROOT, CSharp
+from frame_bounds import FRAME_ORDER, PARTS_ORDER
 from replay import replay
 from synthetic_avatar import synthetic_avatar
 
 from mua.arrays import Array
 from mua.asset import write
 from mua.gpu import Device
-
-sys.path.append(str(ROOT / "tests" / "parity"))
-
-from frame_bounds import FRAME_ORDER, PARTS_ORDER
 
 FRAMES = 24  # displayed
 POSED = len(FRAME_ORDER) - sum(map(len, PARTS_ORDER))  # dispatches of a frame that decodes nothing
@@ -29,7 +25,7 @@ SHADOW = 3  # pass
 class Shown:
     """What the displayed frames of one playing show."""
 
-    sets: int  # of channels
+    sets: int  # sets of channels
     dispatches: list[int]
     kept: list[tuple[Array, Array]]  # mesh and channels
     outside: list[str]  # how far outside of training what is shown is
@@ -47,8 +43,8 @@ class Watched:
         """With the spread on, and off."""
         file = self._folder / "first.muaavatar"
         write(file, synthetic_avatar(1), storage="f16")
-        said = self._csharp.run(self._program, ROOT / "ComputeShaders", story, file)
-        reported = [line.split("\t", 1) for line in said.splitlines()]
+        printed = self._csharp.run(self._program, ROOT / "ComputeShaders", story, file)
+        reported = [line.split("\t", 1) for line in printed.splitlines()]
         assert ["alive", "0"] in reported
         sets = [int(value) for name, value in reported if name == "sets"]
         spread, at_once = (

@@ -15,7 +15,7 @@ import wgpu
 from csharp import PROGRAMS, ROOT, RUNTIME, CSharp
 from drawn import DEPTH_FORMAT, Target, UnityDraw, rows
 from rasterised import STROKES_BOUND, SURFACE_BOUND, Picture, Stroke, Wall, compare
-from recorded_frames import MIRROR, STAND_INS, place_of
+from recorded_frames import eye_lines, place_of
 from replay import Drawn, replay, value
 from shader_programs import VARIANTS, programs
 from synthetic_avatar import sparse_avatar, synthetic_avatar, with_surface
@@ -24,7 +24,7 @@ from mua import rotation
 from mua.arrays import Array
 from mua.asset import read, write
 from mua.asset.avatar import Avatar
-from mua.avatar.camera import EYE_DISTANCE, NEAR, Camera, orbit, stereo
+from mua.avatar.camera import EYE_DISTANCE, Camera, orbit, stereo
 from mua.avatar.decode import decode_clip_frame
 from mua.gpu import Device
 from mua.player.draw import image_format
@@ -42,29 +42,20 @@ from mua.player.surface import surface_mesh
 
 SCREEN = (160, 200)
 GAMMA = ("UNITY_COLORSPACE_GAMMA",)
-FRAME = 3  # of a clip of 24 Hz
+FRAME = 3  # a frame of the clip at 24 Hz
 PLACE = (0.35, 0.1, -0.2, 0.1, 0.5, -0.1, 0.85446, 0.8)  # Unity's position, then rotation (x, y, z, w), then size
 PASSES = ("Geometry", "Template", "Skeleton", "ShadowCaster")
 VIEWS = PASSES[:3]
 MAP = 512  # pixels along a shadow map
 SUBPIXELS = 256  # to which the software device rounds places, along a pixel: its subPixelPrecisionBits are 8
-STEEPEST = 2.3  # of light over sRGB, near white
+STEEPEST = 2.3  # the slope of linear light over sRGB near white
 METRES = 4.0  # that it spans
 
 
 @pytest.fixture(scope="module")
 def surface_program(csharp: CSharp) -> Path:
-    engine = csharp.build([STAND_INS / "UnityEngine"], library=True, name="UnityEngine")
-    file = csharp.build([RUNTIME / "Format"], library=True, name="Mua.Format")
-    motion = csharp.build([RUNTIME / "Motion"], library=True, name="Mua.Motion", references=[file])
-    sources = [
-        *sorted(RUNTIME.glob("*.cs")),
-        RUNTIME / "Kernels",
-        PROGRAMS / "shared",
-        PROGRAMS / "scenario",
-        PROGRAMS / "SurfaceProgram.cs",
-    ]
-    return csharp.build(sources, name="SurfaceProgram", references=[engine, file, motion])
+    sources = (PROGRAMS / "shared", PROGRAMS / "scenario", PROGRAMS / "SurfaceProgram.cs")
+    return csharp.runtime(*sources, name="SurfaceProgram")
 
 
 def arrays(path: Path) -> list[Array]:
@@ -88,8 +79,8 @@ def test_triangles_and_those_about_each_texel_are_the_desktop_players(
 
 
 def test_a_file_without_a_surface_is_told_in_a_sentence(csharp: CSharp, surface_program: Path, tmp_path: Path) -> None:
-    said = csharp.run(surface_program, "grid", ROOT / "tests" / "golden" / "synthetic.muaavatar", tmp_path / "grid")
-    assert said.strip() == "the file holds no surface to show; bake it again."
+    printed = csharp.run(surface_program, "grid", ROOT / "tests" / "golden" / "synthetic.muaavatar", tmp_path / "grid")
+    assert printed.strip() == "the file holds no surface to show; bake it again."
 
 
 @dataclass(frozen=True)
@@ -99,7 +90,7 @@ class Scene:
     avatar: Avatar
     cameras: tuple[Camera, ...]
     drawn: dict[str, Drawn]  # by pass
-    said: dict[str, list[int]]
+    printed: dict[str, list[int]]
 
 
 @pytest.fixture(scope="module")
@@ -112,16 +103,13 @@ def scene(csharp: CSharp, surface_program: Path, device: Device, tmp_path_factor
     centres = placed(posed(avatar).centres)
     bounds = np.stack([centres.min(axis=0), centres.max(axis=0)])
     cameras = stereo(orbit(bounds, screen=SCREEN, azimuth=0.7, elevation=0.3), EYE_DISTANCE)
-    lines = ["screen {} {} {}".format(*SCREEN, NEAR)]
-    for camera in cameras:
-        numbers = np.concatenate([(camera.view @ MIRROR).ravel(), camera.projection.ravel()])
-        lines.append("eye " + " ".join(repr(float(number)) for number in numbers))
+    lines = eye_lines(cameras)
     lines.append(f"decode {(FRAME + 0.02) / 24!r} " + " ".join(map(repr, PLACE)))
     scenario = folder / "scenario.txt"
     scenario.write_text("\n".join(lines))
-    said = csharp.run(surface_program, "draw", ROOT / "ComputeShaders", folder / "recording", scenario, *files)
+    printed = csharp.run(surface_program, "draw", ROOT / "ComputeShaders", folder / "recording", scenario, *files)
     draws = {PASSES[drawn.pass_index]: drawn for drawn in replay(device, folder / "recording").draws}
-    spoken = {words[0]: [int(word) for word in words[1:]] for words in map(str.split, said.splitlines())}
+    spoken = {words[0]: [int(word) for word in words[1:]] for words in map(str.split, printed.splitlines())}
     return Scene(avatar, cameras, draws, spoken)
 
 
@@ -249,7 +237,7 @@ def test_a_surface_yields_a_centimetre_to_what_lies_on_it(painter: Painter) -> N
     place, focal = np.array([columns[facet], rows[facet]]) + 0.5, np.diagonal(camera.projection)[:2]
     ray = np.append(((2 * place / SCREEN - 1) * [1, -1] + camera.projection[:2, 2]) / focal, -1)  # a metre deep
     normal = np.cross(*(corners[facet, 1:] - corners[facet, 0]))
-    depth = middles[facet] @ normal / (ray @ normal)  # of the pixel's middle on the facet
+    depth = middles[facet] @ normal / (ray @ normal)  # where the ray through the pixel's middle meets the facet
     seen = []
     for behind in (0.005, 0.015):
         image = painter.unity("Template", plane=depth_at(camera, depth + behind))
@@ -343,15 +331,15 @@ def test_draws_of_indices(scene: Scene) -> None:
 
 
 def test_a_view_costs_nothing_until_it_is_wanted(scene: Scene) -> None:
-    assert scene.said["idle"] == [0, 0, 0]  # buffers, draws for the engine, draws for cameras
-    assert scene.said["first"][0] >= 2  # the grid may still be under way
-    assert scene.said["made"][0] == scene.said["again"][0] == 6  # ring, its starts, two of indices, rest, strokes
+    assert scene.printed["idle"] == [0, 0, 0]  # buffers, draws for the engine, draws for cameras
+    assert scene.printed["first"][0] >= 2  # the grid may still be under way
+    assert scene.printed["made"][0] == scene.printed["again"][0] == 6  # ring, its starts, two of indices, rest, strokes
 
 
 def test_an_editor_that_does_not_play_shows_the_geometry_at_once(scene: Scene) -> None:
-    assert scene.said["still"] == [1]
+    assert scene.printed["still"] == [1]
 
 
 def test_frames_allocate_nothing_and_leave_nothing_behind(scene: Scene) -> None:
-    assert scene.said["allocated"] == [0]
-    assert scene.said["alive"] == [0]
+    assert scene.printed["allocated"] == [0]
+    assert scene.printed["alive"] == [0]

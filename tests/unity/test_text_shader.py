@@ -13,7 +13,7 @@ from mua.player.draw import read_image
 SIDE = 8  # pixels; the font has a texel for each column
 RIM = 0.1  # opacity below which nothing is drawn
 COLOR = (0.2, 0.4, 0.6, 0.5)
-COVER = np.array([0, 25, 50, 52, 100, 150, 200, 255], np.uint8)  # of the font's texels, by column
+COVER = np.array([0, 25, 50, 52, 100, 150, 200, 255], np.uint8)  # the font's coverage by column
 ROUNDED = 1e-6  # single precision
 ATTRIBUTES = (("float32x3", 0), ("float32x4", 12), ("float32x2", 28))  # place, color, uv: their bytes in a vertex
 

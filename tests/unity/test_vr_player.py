@@ -5,7 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from csharp import PROGRAMS, ROOT, CSharp
+from csharp import PROGRAMS, ROOT, CSharp, by_name
 from package_compiler import Compiler, assemblies
 from synthetic_avatar import synthetic_avatar, with_surface
 from training import outside_of_training
@@ -15,8 +15,8 @@ from mua.asset import write
 KERNELS = ROOT / "ComputeShaders"
 SAMPLE = ROOT / "unity-package" / "Samples~" / "VrPlayer"
 HEADER = 32  # bytes of a string beyond its characters
-Told = dict[str, list[str]]
-Story = Callable[..., Told]
+Reports = dict[str, list[str]]
+Story = Callable[..., Reports]
 
 
 @pytest.fixture(scope="module", params=[True, False], ids=["input system", "input manager"])
@@ -43,16 +43,13 @@ def folder(tmp_path: Path) -> Path:
 def story(csharp: CSharp, program: Path, folder: Path) -> Story:
     def tell(
         name: str,
-        *told_player: str,
+        *arguments: str,
         files: tuple[str, ...] = ("persistent/avatars/first", "persistent/avatars/second"),
-    ) -> Told:
+    ) -> Reports:
         for seed, file in enumerate(files):
             put(folder / f"{file}.muaavatar", seed)
-        reported: Told = {"log": []}
-        said = csharp.run(program, KERNELS, name, folder, folder / "persistent", folder / "streaming", *told_player)
-        for line in said.splitlines():
-            key, value = line.split("\t", 1)
-            reported.setdefault(key, []).append(value)
+        folders = (folder, folder / "persistent", folder / "streaming")
+        reported = {"log": [], **by_name(csharp.run(program, KERNELS, name, *folders, *arguments))}
         assert (reported["alive"], reported["recorders"]) == (["0"], ["0"])
         return reported
 
@@ -279,8 +276,8 @@ def test_without_an_avatar_the_panel_says_where_to_put_one(story: Story, folder:
     (folder / "persistent" / "avatars").rmdir()
     reported = story("Goes", files=())
     assert reported["state"] == ["Empty "]
-    said = reported["panel"][0].replace("|", " ")
-    assert "No avatar was found. Put files like hero.muaavatar in" in said
+    panel = reported["panel"][0].replace("|", " ")
+    assert "No avatar was found. Put files like hero.muaavatar in" in panel
     assert str(folder / "persistent" / "avatars") in reported["panel"][0].replace("|", "")
     assert (folder / "persistent" / "avatars").is_dir()
     assert reported["log"] == []

@@ -44,9 +44,6 @@ internal static class FormatProgram
                     Console.WriteLine(Answer(cut));
                 }
                 return 0;
-            case "mutate":
-                Mutate(content, int.Parse(arguments[2]), int.Parse(arguments[3]));
-                return 0;
             case "halves":
                 Print("halves", Enumerable.Range(0, 1 << 16).Select(bits => Half.ToSingle((ushort)bits)).ToArray());
                 return 0;
@@ -126,66 +123,6 @@ internal static class FormatProgram
             Checksum.Append(0, Encoding.UTF8.GetBytes(name + kind), 0, name.Length + kind.Length), bytes, 0, bytes.Length);
         Dump(AvatarFile.Read(content));
         return allocated + "ok\t" + sum;
-    }
-
-    /// <summary>
-    /// Changes `count` bytes in all, one to eight at a time and half of them outside tensors, reads and restores; the
-    /// checksum is left out, for it would refuse them all.
-    /// </summary>
-    private static void Mutate(byte[] content, int count, int seed)
-    {
-        var random = new Random(seed);
-        int[] structure = Structure(AvatarFile.Read(content), content.Length);
-        byte[] telling = { 0, 1, 2, 4, 0x7F, 0x80, 0xFE, 0xFF };
-        var refused = new SortedDictionary<string, int>();
-        long most = 0, bound = 2L * content.Length;
-        var original = (byte[])content.Clone();
-        for (int changed = 0, read = 0; changed < count; read++)
-        {
-            int burst = 1 << random.Next(4);
-            for (int i = 0; i < burst; i++, changed++)
-            {
-                int at = read % 2 == 0 ? structure[random.Next(structure.Length)] : random.Next(content.Length);
-                content[at] = random.Next(2) == 0 ? telling[random.Next(telling.Length)] : (byte)random.Next(256);
-            }
-            long before = GC.GetAllocatedBytesForCurrentThread();
-            string code = "ok";
-            try
-            {
-                AvatarFile.Decode(Parser.Parse(content), content);
-            }
-            catch (AvatarFormatException error)
-            {
-                code = error.Code;
-            }
-            most = Math.Max(most, GC.GetAllocatedBytesForCurrentThread() - before);
-            refused.TryGetValue(code, out int seen);
-            refused[code] = seen + 1;
-            Buffer.BlockCopy(original, 0, content, 0, content.Length);
-        }
-        foreach (KeyValuePair<string, int> answer in refused)
-        {
-            Console.WriteLine(answer.Key + " " + answer.Value);
-        }
-        Console.WriteLine("allocated " + most + " of " + bound);
-    }
-
-    /// <summary>Bytes of the file that lie in no tensor.</summary>
-    private static int[] Structure(AvatarFile avatar, int length)
-    {
-        var free = new bool[length];
-        for (int i = 0; i < length; i++)
-        {
-            free[i] = true;
-        }
-        foreach (Tensor tensor in Tensors(avatar).Select(pair => pair.Value))
-        {
-            for (int i = 0; i < tensor.ByteLength; i++)
-            {
-                free[tensor.Offset + i] = false;
-            }
-        }
-        return Enumerable.Range(0, length).Where(i => free[i]).ToArray();
     }
 
     /// <summary>Every value as `name kind hex`.</summary>

@@ -23,7 +23,7 @@ internal static class PackageProgram
             }
             if (type.IsPublic)
             {
-                foreach (MemberInfo member in type.GetMembers(Own ^ BindingFlags.NonPublic | BindingFlags.Instance))
+                foreach (MemberInfo member in type.GetMembers(Own ^ BindingFlags.NonPublic | BindingFlags.Instance | BindingFlags.Static))
                 {
                     Print("member", type, member);
                 }

@@ -9,7 +9,6 @@ namespace UnityEngine
     public sealed class Camera : Behaviour
     {
         public enum StereoscopicEye { Left, Right }
-        public enum MonoOrStereoscopicEye { Left, Right, Mono }
         public delegate void CameraCallback(Camera cam);
 
         public static CameraCallback onPreCull, onPreRender, onPostRender;

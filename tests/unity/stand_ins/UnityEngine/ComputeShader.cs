@@ -47,13 +47,11 @@ namespace UnityEngine
         public void SetInt(int nameID, int val) { Constants.Set(nameID, val); }
         public void SetFloat(int nameID, float val) { Constants.Set(nameID, val); }
         public void SetVector(int nameID, Vector4 val) { Constants.Set(nameID, val); }
-        public void SetInts(int nameID, params int[] values) { Constants.Set(nameID, values); }
         public void SetMatrixArray(int nameID, Matrix4x4[] values) { Constants.Set(nameID, values); }
         public void SetBuffer(int kernelIndex, int nameID, GraphicsBuffer buffer) { Bind(kernelIndex, nameID, buffer); }
         public void SetBuffer(int kernelIndex, string name, GraphicsBuffer buffer) { Bind(kernelIndex, Shader.PropertyToID(name), buffer); }
         public void SetInt(string name, int val) { Constants.Set(Shader.PropertyToID(name), val); }
         public void SetFloat(string name, float val) { Constants.Set(Shader.PropertyToID(name), val); }
-        public void SetInts(string name, params int[] values) { Constants.Set(Shader.PropertyToID(name), values); }
         public void Dispatch(int kernelIndex, int threadGroupsX, int threadGroupsY, int threadGroupsZ)
         {
             CheckGroups(kernelIndex, threadGroupsX, threadGroupsY, threadGroupsZ);

@@ -17,12 +17,6 @@ namespace UnityEngine
         [Flags]
         public enum UsageFlags { None = 0, LockBufferForWrite = 1 }
 
-        public struct IndirectDrawArgs
-        {
-            public const int size = 16;
-            public uint instanceCount { get; set; }
-        }
-
         private const Target Computed = Target.Structured | Target.Raw | Target.Append | Target.Counter | Target.IndirectArguments;
         private const Target AnyStride = Target.Vertex | Target.Index | Target.CopySource | Target.CopyDestination;
         private static int lastId;

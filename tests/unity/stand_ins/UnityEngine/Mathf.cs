@@ -6,9 +6,7 @@ namespace UnityEngine
     public struct Mathf
     {
         public const float PI = (float)Math.PI;
-        public const float Deg2Rad = PI / 180;
         public const float Rad2Deg = 180 / PI;
-        public const float Infinity = float.PositiveInfinity;
         public static readonly float Epsilon = float.Epsilon;
 
         public static float Abs(float f) { return Math.Abs(f); }
@@ -34,6 +32,5 @@ namespace UnityEngine
         public static float Clamp(float value, float min, float max) { return value < min ? min : value > max ? max : value; }
         public static int Clamp(int value, int min, int max) { return value < min ? min : value > max ? max : value; }
         public static float Clamp01(float value) { return Clamp(value, 0, 1); }
-        public static float Lerp(float a, float b, float t) { return a + (b - a) * Clamp01(t); }
     }
 }

@@ -19,7 +19,6 @@ namespace UnityEngine
     [Obsolete("FindObjectsSortMode has been deprecated.", false)]
 #endif
     public enum FindObjectsSortMode { None, InstanceID }
-    public enum FindObjectsInactive { Exclude, Include }
 
     public class Object
     {

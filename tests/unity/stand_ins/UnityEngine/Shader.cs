@@ -47,8 +47,6 @@ namespace UnityEngine
         public void SetInteger(int nameID, int value) { Constants.Set(nameID, value); }
         public void SetFloat(int nameID, float value) { Constants.Set(nameID, value); }
         public void SetVector(int nameID, Vector4 value) { Constants.Set(nameID, value); }
-        public void SetColor(int nameID, Color value) { Constants.Set(nameID, (Vector4)value); }
-        public void SetMatrix(int nameID, Matrix4x4 value) { Constants.Set(nameID, value); }
         public void SetMatrixArray(int nameID, Matrix4x4[] values) { Constants.Set(nameID, values); }
         public void SetVectorArray(int nameID, Vector4[] values) { Constants.Set(nameID, values); }
         public void SetBuffer(int nameID, GraphicsBuffer value) { Buffers[nameID] = value; }
@@ -64,8 +62,6 @@ namespace UnityEngine
         public void SetInteger(int nameID, int value) { Constants.Set(nameID, value); }
         public void SetFloat(int nameID, float value) { Constants.Set(nameID, value); }
         public void SetVector(int nameID, Vector4 value) { Constants.Set(nameID, value); }
-        public void SetColor(int nameID, Color value) { Constants.Set(nameID, (Vector4)value); }
-        public void SetMatrix(int nameID, Matrix4x4 value) { Constants.Set(nameID, value); }
         public void SetMatrixArray(int nameID, Matrix4x4[] values) { Constants.Set(nameID, values); }
         public void SetVectorArray(int nameID, Vector4[] values) { Constants.Set(nameID, values); }
         public void SetBuffer(int nameID, GraphicsBuffer value) { Buffers[nameID] = value; }

@@ -73,7 +73,6 @@ namespace UnityEngine
             float length = v.magnitude;
             return length > 1e-5f ? v / length : zero;
         }
-        public static Vector3 Lerp(Vector3 a, Vector3 b, float t) { return a + (b - a) * Mathf.Clamp01(t); }
         public static Vector3 Min(Vector3 a, Vector3 b)
         {
             return new Vector3(Mathf.Min(a.x, b.x), Mathf.Min(a.y, b.y), Mathf.Min(a.z, b.z));

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from captures import make_capture
 from commands import Commands
-from taught import FEW
+from small_teachers import FEW
 from trainings import FINISHED
 
 import mua
