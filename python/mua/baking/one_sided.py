@@ -82,13 +82,22 @@ def shares_behind(
     return behind
 
 
+def open_edges(
+    vertices: Array,  # [V, 3]
+    faces: Array,  # [F, 3]
+) -> Array:
+    """The edges [n, 2] that only one triangle has; vertices at one place count as one."""
+    size = float(np.ptp(vertices, axis=0).max())
+    _, welded = unique_rows(np.round(vertices / (SAME_PLACE * size)).astype(np.int64))
+    edges = faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
+    return np.asarray(edges[group_rows(np.sort(welded[edges], axis=1), require_count=1)])
+
+
 def near_open_edges(rig: Rig) -> Array:
     """Whether each texel [N] lies near an edge that only one triangle has."""
     vertices, faces, texels = rig.mesh.vertices, rig.mesh.faces, rig.texels
     size = float(np.ptp(vertices, axis=0).max())
-    _, welded = unique_rows(np.round(vertices / (SAME_PLACE * size)).astype(np.int64))
-    edges = faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
-    ends = vertices[edges[group_rows(np.sort(welded[edges], axis=1), require_count=1)]]
+    ends = vertices[open_edges(vertices, faces)]
     if not len(ends):
         return np.zeros(len(texels.texels), bool)
     steps = np.linspace(0, 1, EDGE_POINTS)[:, None, None]

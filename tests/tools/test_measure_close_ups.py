@@ -1,0 +1,54 @@
+"""Close-ups of a character: which parts are shown, and what counts as a fringe."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from measure_close_ups import main, measured
+from PIL import Image
+from shared_data import SharedData
+
+from mua.fidelity.measure import MOST_DECIBELS
+
+SCALE = 1000.0  # pixels along a metre: a fringe is looked for within ten
+
+
+def disc(radius: float, grey: float) -> np.ndarray:
+    """A premultiplied image [64, 64, 4] of a disc."""
+    row, column = np.mgrid[:64, :64]
+    alpha = (np.hypot(row - 32, column - 32) < radius).astype(float)
+    return np.dstack([np.full((64, 64, 3), grey) * alpha[..., None], alpha])
+
+
+def test_a_dark_ring_outside_the_silhouette_is_a_fringe() -> None:
+    nowhere, source = np.zeros((64, 64), bool), disc(16, 0.8)
+    ringed = disc(19, 0.1) * (1 - source[..., 3:]) + source
+    found = measured(source, ringed, nowhere, scale=SCALE)
+    assert 0.2 < found.dark < 0.5
+    assert np.isnan(found.border)
+    assert measured(source, disc(19, 0.8), nowhere, scale=SCALE).dark == 0
+    assert found.psnr < measured(source, disc(17, 0.8), nowhere, scale=SCALE).psnr
+
+
+def test_only_pixels_near_a_border_count_there() -> None:
+    source, splats, near = disc(16, 0.8), disc(16, 0.8), np.zeros((64, 64), bool)
+    near[:, :32] = True
+    splats[30:34, 40:44, :3] = 0
+    found = measured(source, splats, near, scale=SCALE)
+    assert found.border == MOST_DECIBELS
+    assert found.psnr < 40
+
+
+def test_writes_each_part_from_each_side(
+    shared_data: SharedData, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    character = shared_data.path("characters/lumberjack.glb")
+    main([str(character), "--texels", "64", "--size", "96", "-o", str(tmp_path)])
+    names = sorted(file.stem for file in tmp_path.glob("*.png"))
+    parts = ("head", "hand", "hem") if "lumberjack hem front" in names else ("head", "hand")
+    assert names == sorted(f"lumberjack {part} {side}" for part in parts for side in ("front", "behind"))
+    for name in names:
+        source, splats = np.split(np.asarray(Image.open(tmp_path / f"{name}.png")).astype(int), 2, axis=1)
+        assert np.ptp(source) > 100  # the part is in the image
+        assert np.abs(source - splats).mean() < 20
+    assert f"lumberjack, {parts[0]}, front: " in capsys.readouterr().out
