@@ -8,29 +8,12 @@ from mua import rotation
 from mua.arrays import Array
 from mua.characters.gltf.document import Document
 from mua.characters.messages import Messages
+from mua.characters.node_tree import chain, compose
 from mua.scene import Motion
 
 RATE = 30.0  # frames per second that clips of a file are sampled at
 WIDTHS = {"translation": 3, "rotation": 4, "scale": 3}
 INTERPOLATIONS = ("STEP", "LINEAR", "CUBICSPLINE")
-
-
-def compose(translation: Array, quaternion: Array, scale: Array) -> Array:
-    """Matrices [..., 4, 4] of a translation [..., 3], a rotation [..., 4] xyzw (as in glTF) and a scale [..., 3]."""
-    matrix = np.zeros((*translation.shape[:-1], 4, 4))
-    matrix[..., :3, :3] = rotation.to_matrix(np.roll(quaternion, 1, axis=-1)) * scale[..., None, :]
-    matrix[..., :3, 3] = translation
-    matrix[..., 3, 3] = 1
-    return matrix
-
-
-def chain(local: Array, parents: Array) -> Array:
-    """Node-to-world matrices of local ones [..., nodes, 4, 4], parents before children."""
-    world = local.copy()
-    for node, parent in enumerate(parents):
-        if parent >= 0:
-            world[..., node, :, :] = world[..., parent, :, :] @ local[..., node, :, :]
-    return world
 
 
 def moved_nodes(document: Document) -> list[int]:

@@ -32,6 +32,19 @@ def is_quantised(document: Document, node: int) -> bool:
     return any(accessor.componentType != FLOAT for accessor in accessors)
 
 
+def bounds(document: Document, node: int) -> Array:
+    """The corners [n, 3] of the boxes that the file states around a node's mesh, in the mesh's own space."""
+    mesh = document.item("meshes", document.gltf.nodes[node].mesh, field=f"nodes[{node}].mesh")
+    points = [np.zeros((1, 3))]
+    for primitive in mesh.primitives or []:
+        index = primitive.attributes.POSITION if primitive.attributes else None
+        accessor = document.item("accessors", index, field=f"nodes[{node}].mesh POSITION")
+        if accessor.min and accessor.max:
+            ends = np.array([accessor.min, accessor.max], float)
+            points.append(np.stack(np.meshgrid(*ends.T), axis=-1).reshape(-1, 3))
+    return np.concatenate(points[1:] or points)
+
+
 def _is_weighted(primitive: Any) -> bool:
     names = () if primitive.attributes is None else vars(primitive.attributes)
     return any(name.startswith(("JOINTS_", "WEIGHTS_")) for name in names)

@@ -1,47 +1,12 @@
 """The node hierarchy of a glTF file: parents, what the scene shows, rest matrices."""
 
-from collections.abc import Collection, Iterator
-from dataclasses import dataclass
-
 import numpy as np
 
 from mua.arrays import Array
-from mua.characters.gltf.animation import compose
 from mua.characters.gltf.document import Document
+from mua.characters.node_tree import Tree, compose
 
 VISIBILITY = "KHR_node_visibility"
-
-
-@dataclass(frozen=True, eq=False)
-class Tree:
-    """The node hierarchy of a file."""
-
-    parents: dict[int, int]  # child to parent
-    order: list[int]  # nodes of the whole file, parents first
-    shown: set[int]  # nodes of the scene that the file shows
-    hidden: set[int]  # nodes of that scene which the file switches off, with all below
-    world: Array  # [nodes, 4, 4] by glTF index
-
-    def upwards(self, node: int) -> Iterator[int]:
-        """The node, its parent, and so on to the top."""
-        above: int | None = node
-        while above is not None:
-            yield above
-            above = self.parents.get(above)
-
-    def nearest(self, node: int, among: Collection[int]) -> int | None:
-        """The node itself or its nearest ancestor that is one of `among`."""
-        return next((above for above in self.upwards(node) if above in among), None)
-
-    def common(self, nodes: Collection[int]) -> int | None:
-        """The lowest node that is at or above all of `nodes`; None where they have none."""
-        paths = [list(self.upwards(node))[::-1] for node in nodes]
-        shared = None
-        for level in zip(*paths, strict=False):
-            if len(set(level)) > 1:
-                break
-            shared = level[0]
-        return shared
 
 
 def read_tree(document: Document) -> Tree:

@@ -3,6 +3,7 @@
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -10,14 +11,15 @@ import numpy as np
 from mua.atlas.surfaces import Surfaces
 from mua.characters.animation import Animation, bare_animation
 from mua.characters.assemble import assemble
-from mua.characters.gltf.animation import chain, moved_nodes, read_animations
+from mua.characters.gltf.animation import moved_nodes, read_animations
 from mua.characters.gltf.document import Document, load
-from mua.characters.gltf.holders import Holders
 from mua.characters.gltf.materials import read_materials
-from mua.characters.gltf.mesh import has_unweighted, is_quantised, read_parts
-from mua.characters.gltf.nodes import Tree, below, local_matrix, node_name, read_tree
+from mua.characters.gltf.mesh import bounds, has_unweighted, is_quantised, read_parts
+from mua.characters.gltf.nodes import below, local_matrix, node_name, read_tree
 from mua.characters.gltf.vrm import Vrm, read_vrm
+from mua.characters.holders import Holders
 from mua.characters.messages import UNHELD, Messages
+from mua.characters.node_tree import Tree, chain
 from mua.pose.joint_names import limb_count
 from mua.scene import Part, Scene, Skin
 
@@ -66,7 +68,14 @@ def _meshes(document: Document, tree: Tree) -> Scene:
     messages = Messages()
     materials, coordinates = read_materials(document, messages)
     skins = _skins(document)
-    holders = Holders(document, tree, [*vrm.bones.values(), *(int(node) for skin in skins for node in skin.joints)])
+    holders = Holders(
+        tree,
+        [*vrm.bones.values(), *(int(node) for skin in skins for node in skin.joints)],
+        moved=moved_nodes(document),
+        meshes={
+            n: partial(bounds, document, n) for n, node in enumerate(document.gltf.nodes or []) if node.mesh is not None
+        },
+    )
     parts: list[Part] = []
     for node in _drawn(document, tree, vrm, messages):
         skin = document.gltf.nodes[node].skin
@@ -141,13 +150,8 @@ def _at_rest(tree: Tree, nodes: list[int]) -> Skin:
 
 def _scene(document: Document, tree: Tree, skins: list[Skin], *, vrm: Vrm) -> Scene:
     """Keep the nodes that joints and their ancestors are, renumbered parents first, and sample the clips on them."""
-    followed: set[int] = set()
-    for skin in skins:
-        for node in skin.joints:
-            followed.update(tree.upwards(int(node)))
-    nodes = [node for node in tree.order if node in followed]
+    nodes, parents = tree.followed(int(node) for skin in skins for node in skin.joints)
     index = {node: n for n, node in enumerate(nodes)}
-    parents = np.array([index[tree.parents[node]] if node in tree.parents else -1 for node in nodes], np.int32)
     rest = np.array([local_matrix(document, node) for node in nodes]).reshape(-1, 4, 4)
     motions, left_out = read_animations(document, nodes, parents=parents, rest=rest)
     return Scene(
