@@ -75,6 +75,16 @@ def glowing(image: Array, glow: Array) -> Array:
     return np.dstack([np.maximum(image[..., :3], glow[..., :3]), image[..., 3]])
 
 
+def with_opacity(image: Array, opacity: Array) -> Array:
+    """A picture [h, w, 4] uint8 with another opacity [h', w'] uint8, both brought to the larger size."""
+    height, width = np.maximum(image.shape[:2], opacity.shape)
+    color, alpha = (
+        np.asarray(Image.fromarray(plane).resize((width, height), Image.Resampling.BILINEAR))
+        for plane in (np.ascontiguousarray(image[..., :3]), np.ascontiguousarray(opacity))
+    )
+    return np.dstack([color, alpha])
+
+
 def transmitting(image: Array, share: Array) -> Array:
     """A picture [h, w, 4] uint8 that lets through a share of the light, [h', w'] in 0..1; both may be 1 x 1.
 

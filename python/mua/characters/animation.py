@@ -1,12 +1,13 @@
 """The skeleton and clips of a scene whether or not a mesh hangs on it, such as motion exported "without skin"."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 
 from mua.arrays import Array
+from mua.characters.assemble import assemble
 from mua.characters.bind_pose import bind_pose
 from mua.characters.collapsed import without_collapsed
 from mua.characters.correction import corrected
@@ -14,8 +15,11 @@ from mua.characters.joint_tree import is_hips
 from mua.characters.rigid_skeleton import rigid_skeleton, roles_of
 from mua.errors import InputError
 from mua.pose.clip import Clip
+from mua.pose.joint_names import limb_count
 from mua.pose.skeleton import Skeleton
 from mua.scene import Part, Scene
+
+LIMBS = 8  # bones of arms and legs of a whole body, as `limb_count` counts them
 
 
 @dataclass(frozen=True)
@@ -44,6 +48,28 @@ def bare_animation(scene: Scene, path: Path) -> Animation:
     rigged = rigid_skeleton(scene, bind_pose(scene))
     notes = (*scene.notes, *change.size_notes, *change.notes, *rigged.notes)
     return Animation(rigged.skeleton, rigged.clips, notes, roles_of(scene, rigged))
+
+
+def whole_animation(meshed: Scene, bare: Iterable[Scene], path: Path) -> Animation:
+    """Of a file's skeleton as its mesh has it, and as scenes without a mesh have it, the one of a whole body.
+
+    A mesh may be a part of the body alone, such as a face, while the clips move the whole: where its joints do not
+    name all limbs, the skeleton that names most is taken, and of equal ones one with more than twice the joints.
+    """
+    found: Animation | None = None
+    if any(len(part.faces) for part in meshed.parts):
+        rig = assemble(meshed, path)
+        found = Animation(rig.skeleton, rig.clips, (), rig.roles)
+    for scene in bare:
+        if found is None or limb_count(found.skeleton) < LIMBS:
+            other = bare_animation(scene, path)
+            found = other if found is None or _is_fuller(other.skeleton, found.skeleton) else found
+    return found or bare_animation(meshed, path)
+
+
+def _is_fuller(skeleton: Skeleton, than: Skeleton) -> bool:
+    limbs, fewer = limb_count(skeleton), limb_count(than)
+    return limbs > fewer or (limbs == fewer and len(skeleton.names) > 2 * len(than.names))
 
 
 def _stand_in(scene: Scene, skin: int, carries: Array) -> Part:

@@ -7,6 +7,7 @@ from mua.atlas.detail import Detail, UvMode
 from mua.atlas.surfaces import Surfaces
 from mua.atlas.uv import build_atlas
 from mua.characters.animation import Animation
+from mua.characters.fbx.read import read_fbx, read_fbx_animation
 from mua.characters.figure_size import AS_FOUND, FigureSize
 from mua.characters.gltf.read import read_gltf, read_gltf_animation
 from mua.characters.resize import resized
@@ -17,6 +18,7 @@ from mua.rig.character import Character
 
 GLTF = (".glb", ".gltf", ".vrm")
 GLTF_MOTION = (".vrma",)  # motion of a VRM avatar, without a mesh
+FBX = ".fbx"
 USD = (".usd", ".usda", ".usdc", ".usdz")
 SKELETOOL, SKELETOOL_MOTION = ".character", ".motion"  # of DDC, ASH, TriHuman and UMA
 
@@ -26,9 +28,11 @@ def read_surfaces(path: Path, *, size: FigureSize = AS_FOUND, leave_out: Sequenc
 
     Raises an InputError where the suffix is unknown, the file is missing or nothing has such a name.
     """
-    suffix = _checked_suffix(path, (*GLTF, *USD, SKELETOOL))
+    suffix = _checked_suffix(path, (*GLTF, FBX, *USD, SKELETOOL))
     if suffix in GLTF:
         return resized(read_gltf(path, leave_out=leave_out), size, path)
+    if suffix == FBX:
+        return resized(read_fbx(path, leave_out=leave_out), size, path)
     if suffix == SKELETOOL:
         return resized(read_skeletool(path, leave_out=leave_out), size, path)
     from mua.characters.usd.read import read_usd  # with USD's library, which takes long to load
@@ -38,9 +42,11 @@ def read_surfaces(path: Path, *, size: FigureSize = AS_FOUND, leave_out: Sequenc
 
 def read_animation(path: Path) -> Animation:
     """Read a file's skeleton and clips by its suffix, with or without a mesh; raises as `read_surfaces` does."""
-    suffix = _checked_suffix(path, (*GLTF, *GLTF_MOTION, *USD, SKELETOOL_MOTION))
+    suffix = _checked_suffix(path, (*GLTF, *GLTF_MOTION, FBX, *USD, SKELETOOL_MOTION))
     if suffix == SKELETOOL_MOTION:
         return read_skeletool_motion(path)
+    if suffix == FBX:
+        return read_fbx_animation(path)
     if suffix not in USD:
         return read_gltf_animation(path)
     from mua.characters.usd.read import read_usd_animation
@@ -58,6 +64,8 @@ def _checked_suffix(path: Path, known: Sequence[str]) -> str:
     if suffix in USD:
         kinds = ("a ZIP archive",) if suffix == ".usdz" else ("a USD file", "a ZIP archive")
         require_kind(path, "a USD stage", kinds=kinds)
+    elif suffix == FBX:
+        require_kind(path, "an FBX file", kinds=("an FBX file", "a text FBX file"))
     elif suffix in (*GLTF, *GLTF_MOTION):
         require_kind(path, "a glTF file", kinds=("a glTF binary", "JSON"))
     return suffix

@@ -25,7 +25,6 @@ MAGIC = (
     (b"version https://git-lfs.github.com/spec/", "a Git LFS pointer"),
     (b"HIERARCHY", "a BVH motion file"),
 )
-TEXT_FBX = "Blender opens binary FBX alone: save it as binary where it was made, then export it from Blender as .glb"
 ADVICE = {
     "an HTML page": "it was probably saved from a web page instead of being downloaded",
     "a Git LFS pointer": "fetch the file that it stands for with git lfs pull",
@@ -34,13 +33,12 @@ ADVICE = {
     "a Zstandard archive": "unpack it first",
     "a 7z archive": "unpack it first",
     "a RAR archive": "unpack it first",
-    "an FBX file": "open it in Blender and export it as glTF 2.0 (.glb)",
-    "a text FBX file": TEXT_FBX,
+    **dict.fromkeys(("an FBX file", "a text FBX file"), "name it .fbx"),
     "a Blender file": "open it in Blender and export it as glTF 2.0 (.glb)",
 }
 # Suffixes of other scene formats, which no reader here takes.
 FOREIGN_SUFFIXES = {
-    **dict.fromkeys((".fbx", ".blend", ".dae", ".obj", ".ply", ".stl", ".x3d", ".abc"), "Blender"),
+    **dict.fromkeys((".blend", ".dae", ".obj", ".ply", ".stl", ".x3d", ".abc"), "Blender"),
     **dict.fromkeys((".ma", ".mb"), "Maya"),
     **dict.fromkeys((".max", ".3ds"), "3ds Max"),
     **dict.fromkeys((".pmx", ".pmd"), "Blender with an importer for MikuMikuDance models"),
@@ -79,10 +77,6 @@ def require_kind(path: Path, expected: str, *, kinds: tuple[str, ...]) -> None:
 def refuse_foreign(path: Path) -> None:
     """Raise an InputError that says how to convert a scene format that no reader here takes."""
     tool = FOREIGN_SUFFIXES.get(path.suffix.lower())
-    if tool and path.is_file():
-        with path.open("rb") as file:
-            if kind_of(file.read(HEAD)) == "a text FBX file":
-                raise InputError(f"{path}: is a text FBX file, which is not read. {TEXT_FBX}")
     if tool:
         raise InputError(
             f"{path}: {path.suffix} files are not read; open it in {tool} and export it as glTF 2.0 (.glb) "

@@ -5,7 +5,7 @@ from pathlib import Path
 from mua.errors import InputError
 from mua.files.signature import refuse_foreign
 
-RIG_SUFFIXES = (".glb", ".gltf", ".vrm", ".vrma", ".usd", ".usda", ".usdc", ".usdz", ".motion")
+RIG_SUFFIXES = (".glb", ".gltf", ".vrm", ".vrma", ".fbx", ".usd", ".usda", ".usdc", ".usdz", ".motion")
 SUFFIXES = (".bvh", ".npz", *RIG_SUFFIXES)
 
 SAVE_NPZ = "save its poses, trans and mocap_framerate with numpy.savez, and give that .npz"

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from mua.atlas.surfaces import Surfaces
-from mua.characters.animation import Animation, bare_animation
+from mua.characters.animation import Animation, whole_animation
 from mua.characters.assemble import assemble
 from mua.characters.gltf.animation import moved_nodes, read_animations
 from mua.characters.gltf.document import Document, load
@@ -20,12 +20,10 @@ from mua.characters.gltf.vrm import Vrm, read_vrm
 from mua.characters.holders import Holders
 from mua.characters.messages import UNHELD, Messages
 from mua.characters.node_tree import Tree, chain
-from mua.pose.joint_names import limb_count
 from mua.scene import Part, Scene, Skin
 
 INSTANCES = "EXT_mesh_gpu_instancing"
 UNWEIGHTED = "Primitives without skin weights, which no joint moves, are left out, of meshes: {}."
-LIMBS = 8  # bones of arms and legs of a whole body, as `limb_count` counts them
 
 
 def read_gltf(path: Path, *, leave_out: Sequence[str] = ()) -> Surfaces:
@@ -49,17 +47,13 @@ def read_gltf_animation(path: Path) -> Animation:
     document = load(path)
     tree = read_tree(document)
     scene = _meshes(document, tree)
-    vrm = read_vrm(document)
-    if not any(len(part.faces) for part in scene.parts):
-        return bare_animation(_scene(document, tree, _bare_skins(document, tree), vrm=vrm), path)
-    rig = assemble(scene, path)
-    meshed = Animation(rig.skeleton, rig.clips, (), rig.roles)
     joints = {int(node) for skin in _skins(document) for node in skin.joints}
-    wholes = [_bare_skins(document, tree)] if joints and limb_count(meshed.skeleton) < LIMBS else []
-    if not set(moved_nodes(document)) <= joints:
+    meshed = any(len(part.faces) for part in scene.parts)
+    wholes = [_bare_skins(document, tree)] if joints or not meshed else []
+    if meshed and not set(moved_nodes(document)) <= joints:
         wholes.append(_moved_tree(document, tree))
-    found = [bare_animation(_scene(document, tree, skins, vrm=vrm), path) for skins in wholes]
-    return max([meshed, *found], key=lambda animation: limb_count(animation.skeleton))
+    vrm = read_vrm(document)
+    return whole_animation(scene, (_scene(document, tree, skins, vrm=vrm) for skins in wholes), path)
 
 
 def _meshes(document: Document, tree: Tree) -> Scene:

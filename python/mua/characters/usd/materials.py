@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from PIL import Image
 from pxr import Ar, Sdf, Usd, UsdGeom, UsdShade
 
 from mua.arrays import Array
@@ -80,7 +79,7 @@ def _surface_look(name: str, shader: UsdShade.Shader, path: Path) -> Look:
         look = replace(look, material=replace(look.material, alpha_mode="mask", alpha_cutoff=threshold))
     if alpha_source is not None:
         alpha = _channel(*alpha_source, path)
-        return replace(look, material=replace(look.material, image=_with_alpha(look.material.image, alpha)))
+        return replace(look, material=replace(look.material, image=pictures.with_opacity(look.material.image, alpha)))
     if source is None:
         return look
     image = pictures.tinted(pictures.opaque(look.material.image), np.array([1, 1, 1, float(opacity)]))
@@ -180,11 +179,3 @@ def _picture(texture: UsdShade.Shader, path: Path) -> Array:
         return pictures.decode_image(content)
     except ValueError as broken:
         raise InputError(f"{path}: {field} names {asset.path}, which cannot be decoded: {broken}") from broken
-
-
-def _with_alpha(image: Array, alpha: Array) -> Array:
-    """The image [h, w, 4] with the opacity [h', w'], both brought to the larger size."""
-    height, width = np.maximum(image.shape[:2], alpha.shape)
-    color = np.asarray(Image.fromarray(image[..., :3]).resize((width, height), Image.Resampling.BILINEAR))
-    opacity = np.asarray(Image.fromarray(alpha).resize((width, height), Image.Resampling.BILINEAR))
-    return np.dstack([color, opacity])
