@@ -43,7 +43,7 @@ def load(path: Path) -> Any:
         )
     except (ufbx.UfbxError, ValueError, MemoryError) as broken:
         said = str(broken) or type(broken).__name__
-        raise InputError(f"{path}: the FBX file cannot be read: {said}") from broken
+        raise InputError(f"{path}: the FBX file cannot be read, it is broken or cut short (ufbx: {said})") from broken
     _held.append(scene)
     return scene
 

@@ -75,9 +75,11 @@ def _note_method(geometry: Geometry, messages: Messages) -> None:
 def _influences(cluster: Any, joint: int, geometry: Geometry) -> Array:
     """Rows [n, 3] of vertex, joint and weight."""
     vertices, weights = array(cluster, "vertices").ravel(), array(cluster, "weights").ravel()
-    fits = len(vertices) == len(weights) and vertices.max(initial=-1) < len(geometry.positions)
-    if not fits or not np.isfinite(weights).all():
-        raise InputError(f"{geometry.where}: a skin cluster does not fit its {len(geometry.positions)} vertices")
+    where = f"{geometry.where}: the cluster of {get(cluster, 'bone_node.name')}"
+    if vertices.max(initial=-1) >= len(geometry.positions):
+        raise InputError(f"{where} has weights for vertex {vertices.max()}, of {len(geometry.positions)} vertices")
+    if len(vertices) != len(weights) or not np.isfinite(weights).all():
+        raise InputError(f"{where} has {len(weights)} weights for {len(vertices)} vertices, expected a finite one each")
     return np.stack([vertices, np.full(len(vertices), joint), weights], axis=1)[weights > 0]
 
 
