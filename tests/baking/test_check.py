@@ -120,10 +120,10 @@ def test_figures_without_a_check_are_refused(tmp_path: Path) -> None:
 
 
 def test_a_motion_format_that_is_not_read_is_refused_before_the_character_is_read(tmp_path: Path) -> None:
-    character, motion = tmp_path / "hero.glb", tmp_path / "walk.fbx"
+    character, motion = tmp_path / "hero.glb", tmp_path / "walk.c3d"
     character.touch()  # which itself would be refused
-    motion.write_bytes(b"Kaydara FBX Binary")
-    with pytest.raises(InputError, match=r"walk\.fbx"):
+    motion.write_bytes(b"markers")
+    with pytest.raises(InputError, match=r"walk\.c3d"):
         CliRunner().invoke(app, [str(character), "--motion", str(motion), "--check"], catch_exceptions=False)
 
 

@@ -2,6 +2,7 @@
 
 import functools
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -193,3 +194,18 @@ def test_a_leg_of_one_bone_is_the_thigh_and_a_leg_below_something_unknown_is_not
     assert {role for role in roles(block) if "left" in role} == {"left thigh", "left foot"}
     unknown = tree(Hips="", thing_L="Hips", thing_R="Hips", leg_L="thing_L", leg_R="thing_R")
     assert {role for role in roles(unknown) if "left" in role} == {"left shin"}
+
+
+@pytest.mark.parametrize("owner", ["UnityChan_", "LowMan", "humanoid_ "])
+def test_a_figures_own_name_before_all_joints_is_no_part_of_theirs(owner: str) -> None:
+    plain = {
+        "Hips": "",
+        "Spine": "Hips",
+        "Head": "Spine",
+        **{f"{s}{n}": p.format(s) for s in ("Left", "Right") for n, p in (("Arm", "Spine"), ("ForeArm", "{}Arm"))},
+        **{f"{s}{n}": p.format(s) for s in ("Left", "Right") for n, p in (("UpLeg", "Hips"), ("Leg", "{}UpLeg"))},
+    }
+    called = tree(**plain)
+    owned = replace(called, names=tuple(owner + name for name in called.names))
+    assert roles(owned) == roles(called)
+    assert "left forearm" in roles(owned)

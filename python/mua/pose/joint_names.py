@@ -6,7 +6,10 @@ may share a role (CMU's lowerneck and upperneck are the neck); they are listed f
 
 import re
 import unicodedata
+from collections import Counter
 from collections.abc import Mapping
+from dataclasses import replace
+from itertools import takewhile
 
 from mua.pose.foreign_names import FOREIGN_CENTRAL, FOREIGN_SIDE, FOREIGN_SIDED, WIDE_CENTRAL, WIDE_SIDE, WIDE_SIDED
 from mua.pose.skeleton import Skeleton
@@ -17,6 +20,8 @@ SIDES = ("left", "right")
 FINGERS = ("thumb", "index", "middle", "ring", "pinky")
 CENTRAL_PARTS = ("hips", "spine", "neck", "head")
 SIDED_PARTS = ("shoulder", "upper_arm", "forearm", "hand", "thigh", "shin", "foot", "toe", *FINGERS)
+LIMBS = frozenset(f"{side} {part}" for side in SIDES for part in ("upper_arm", "forearm", "thigh", "shin"))
+LIMBS_TOLD = 6  # of these, which names that are understood tell at least
 ROLES = (*CENTRAL_PARTS, *(f"{side} {part}" for side in SIDES for part in SIDED_PARTS))
 
 _FINGER_NAMES = {
@@ -88,6 +93,8 @@ _RIG_PREFIX = re.compile(
 )
 _WORD = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+")
 _FBX_ESCAPE = re.compile(r"FBXASC(\d{3})")  # Maya writes characters that names may not have by their code
+_OWNER = re.compile(r"[^\W_]+[_\s.\-]+")  # the word before a joint's own name
+_LAST_WORD = re.compile(r"([A-Z][a-z]*|[a-z]+)$")  # of what all names share: maybe the start of their own words
 _NUMBERED_FINGER = re.compile(r"finger[\s_.\-]?(\d)", re.IGNORECASE)
 
 
@@ -97,6 +104,7 @@ def roles(
 ) -> Roles:
     """Joints of every role, from the root outwards: from the file where it states them, else from the names."""
     found: dict[str, list[int]] = {}
+    filed, skeleton = skeleton, _without_owner(skeleton)
     first_finger = _first_finger(skeleton)
     for joint, name in enumerate(skeleton.names):
         role = _role(name, first_finger)
@@ -106,7 +114,7 @@ def roles(
         _settle_side(found, side)
         _leave_out_targets(skeleton, found, side)
     chains = {role: _one_chain(skeleton, joints) for role, joints in found.items()}
-    from_file = _stated(skeleton, stated or {})
+    from_file = _stated(filed, stated or {})
     taken = {joint for joints in from_file.values() for joint in joints}
     left = {role: tuple(joint for joint in joints if joint not in taken) for role, joints in chains.items()}
     chains = {role: joints for role, joints in left.items() if joints and role not in from_file} | from_file
@@ -116,10 +124,26 @@ def roles(
     return chains
 
 
+def _without_owner(skeleton: Skeleton) -> Skeleton:
+    """The skeleton with its joints' names less the figure's own before them, as in UnityChan_LeftArm, LowManLeftArm.
+
+    Only where the names tell arms and legs without it, and not with it.
+    """
+    starts = Counter(start[0] for name in skeleton.names if (start := _OWNER.match(name)))
+    low, high = min(skeleton.names), max(skeleton.names)
+    common = "".join(a for a, _ in takewhile(lambda pair: pair[0] == pair[1], zip(low, high, strict=False)))
+    for owner in ("", common, _LAST_WORD.sub("", common), *(start for start, _ in starts.most_common(2))):
+        bare = replace(skeleton, names=tuple(name.removeprefix(owner) or name for name in skeleton.names))
+        first_finger = _first_finger(bare)
+        if len(LIMBS & {_role(name, first_finger) for name in bare.names}) >= LIMBS_TOLD:
+            return bare
+    return skeleton
+
+
 def limb_count(skeleton: Skeleton) -> int:
     """How many of the eight bones of arms and legs the joints' names identify."""
     found = roles(skeleton)
-    return sum(f"{side} {part}" in found for side in SIDES for part in ("upper_arm", "forearm", "thigh", "shin"))
+    return len(LIMBS & set(found))
 
 
 def _stated(skeleton: Skeleton, stated: Mapping[str, str]) -> Roles:
