@@ -30,7 +30,8 @@ def bake(
     character: Annotated[
         PathLike | None,
         Option(
-            "Rigged character: .glb, .gltf, .vrm, .usd, .usda, .usdc, .usdz or .character; or the folder of a capture.",
+            "Rigged character: .fbx, .glb, .gltf, .vrm, .usd, .usda, .usdc, .usdz or .character; "
+            "or the folder of a capture.",
             default="a built-in procedural character",
         ),
     ] = None,

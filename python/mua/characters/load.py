@@ -25,7 +25,7 @@ def load_rig(
     height: float | None = None,
     leave_out: Sequence[str] = (),
 ) -> Rig:
-    """The rig of a rigged character's file (glTF, VRM, USD or Skeletool), as a `TeacherWriter` takes it.
+    """The rig of a rigged character's file (FBX, glTF, VRM, USD or Skeletool), as a `TeacherWriter` takes it.
 
     `texels` is the size of the teacher's texture along a side, a multiple of 16. The template is the file's own mesh,
     one vertex for each place on the surface, or is simplified to about `vertices`. UVs stay as they are; with

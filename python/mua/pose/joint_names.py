@@ -21,7 +21,7 @@ FINGERS = ("thumb", "index", "middle", "ring", "pinky")
 CENTRAL_PARTS = ("hips", "spine", "neck", "head")
 SIDED_PARTS = ("shoulder", "upper_arm", "forearm", "hand", "thigh", "shin", "foot", "toe", *FINGERS)
 LIMBS = frozenset(f"{side} {part}" for side in SIDES for part in ("upper_arm", "forearm", "thigh", "shin"))
-LIMBS_TOLD = 6  # of these, which names that are understood tell at least
+LIMBS_NAMED = 6  # of these, which names that are understood tell at least
 ROLES = (*CENTRAL_PARTS, *(f"{side} {part}" for side in SIDES for part in SIDED_PARTS))
 
 _FINGER_NAMES = {
@@ -135,7 +135,7 @@ def _without_owner(skeleton: Skeleton) -> Skeleton:
     for owner in ("", common, _LAST_WORD.sub("", common), *(start for start, _ in starts.most_common(2))):
         bare = replace(skeleton, names=tuple(name.removeprefix(owner) or name for name in skeleton.names))
         first_finger = _first_finger(bare)
-        if len(LIMBS & {_role(name, first_finger) for name in bare.names}) >= LIMBS_TOLD:
+        if len(LIMBS & {_role(name, first_finger) for name in bare.names}) >= LIMBS_NAMED:
             return bare
     return skeleton
 
