@@ -238,7 +238,8 @@ def test_a_quad_that_is_not_convex_is_cut_inside(tmp_path: Path) -> None:
     geometry = fbx.add("Geometry", "", "Mesh", *ring, to=body)
     fbx.skin(geometry, bones[:1], binds(fbx)[:1], weights=np.ones((4, 1)))
     read = read_surfaces(fbx.save(tmp_path / "body.fbx"))
-    cross = np.cross(*(read.vertices[read.faces[:, k]] - read.vertices[read.faces[:, 0]] for k in (1, 2)))
+    first, second, third = (read.vertices[read.faces[:, corner]] for corner in range(3))
+    cross = np.cross(second - first, third - first)
     assert abs(cross[:, 2]).sum() / 2 == pytest.approx(0.4)
 
 

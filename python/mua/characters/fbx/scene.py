@@ -11,9 +11,10 @@ import numpy as np
 from mua.arrays import Array
 from mua.characters.fbx.animation import Take, read_takes
 from mua.characters.fbx.bindings import array, get, items, load
-from mua.characters.fbx.materials import Look, Looks
-from mua.characters.fbx.mesh import Geometry, read_geometry
+from mua.characters.fbx.materials import Looks
+from mua.characters.fbx.mesh import read_geometry
 from mua.characters.fbx.nodes import read_nodes
+from mua.characters.fbx.parts import by_material
 from mua.characters.fbx.skin import bones_of, read_skin, rigid_skin
 from mua.characters.holders import Holders
 from mua.characters.messages import UNHELD, Messages
@@ -69,88 +70,56 @@ class Reader:
         holders = Holders(tree, joints, moved=self._moved, meshes=corners)
         skins: list[Skin] = []
         parts: list[Part] = []
-        for node in (node for node in tree.order if self._is_drawn(node)):
+        for node in (node for node in tree.order if node in self._meshes):
             holder = None if clusters[node] else holders.of(node)
+            if not self._is_drawn(node, skinned=bool(clusters[node])):
+                continue
             if not clusters[node] and holder is None:
                 self._messages.add(UNHELD, self._nodes.names[node])
                 continue
-            geometry = read_geometry(self._meshes[node], self._nodes.names[node], self._path, self._messages)
-            if holder is None:
-                skin, joint, weight = read_skin(geometry, node, self._nodes, self._messages)
-            else:
-                skin = rigid_skin(node, holder, self._nodes)
-                joint = np.zeros((len(geometry.positions), 1), int)
-                weight = np.ones(joint.shape)
+            skin, more = self._mesh(node, holder, skin=len(skins))
             skins.append(skin)
-            whole = Part(
-                name=str(get(geometry.source, "name")) or geometry.name,
-                group=node,
-                positions=geometry.positions,
-                faces=geometry.corners[geometry.triangles],
-                uv=np.zeros((0, 2)),
-                uv_faces=np.full_like(geometry.triangles, -1),
-                material=0,
-                skin=len(skins) - 1,
-                joints=joint,
-                weights=weight,
-                node=geometry.name,
-            )
-            parts += self._by_material(whole, geometry, node)
+            parts += more
         return skins, parts
 
-    def _is_drawn(self, node: int) -> bool:
-        if node not in self._meshes:
+    def _is_drawn(self, node: int, *, skinned: bool) -> bool:
+        flat = np.linalg.det(self._nodes.tree.world[node][:3, :3]) == 0
+        if node in self._nodes.tree.hidden or (flat and not skinned):
+            self._messages.add("Meshes that the file hides are left out: {}.", self._nodes.names[node])
             return False
-        if node in self._nodes.tree.hidden:
-            self._messages.add("Meshes that the file hides are left out: {}.", self._nodes.names[node])
-        elif node in self._nodes.details:
+        if node in self._nodes.details:
             self._messages.add("Lower levels of detail are left out: {}.", self._nodes.names[node])
-        elif np.linalg.det(self._nodes.tree.world[node][:3, :3]) == 0 and not len(
-            bones_of(self._meshes[node], self._nodes)
-        ):
-            self._messages.add("Meshes that the file hides are left out: {}.", self._nodes.names[node])
+            return False
+        return True
+
+    def _mesh(self, node: int, holder: int | None, *, skin: int) -> tuple[Skin, list[Part]]:
+        """The mesh of a node, on a skin of this number; on its clusters, or rigid on `holder`."""
+        name = self._nodes.names[node]
+        geometry = read_geometry(self._meshes[node], name, self._path, self._messages)
+        if holder is None:
+            bound, joints, weights = read_skin(geometry, node, self._nodes, self._messages)
         else:
-            return True
-        return False
+            bound, joints = rigid_skin(node, holder, self._nodes), np.zeros((len(geometry.positions), 1), int)
+            weights = np.ones(joints.shape)
+        whole = Part(
+            name=str(get(geometry.source, "name")) or name,
+            group=node,
+            positions=geometry.positions,
+            faces=geometry.corners[geometry.triangles],
+            uv=np.zeros((0, 2)),
+            uv_faces=np.full_like(geometry.triangles, -1),
+            material=0,
+            skin=skin,
+            joints=joints,
+            weights=weights,
+            node=name,
+        )
+        sources = list(items(self._nodes.sources[node], "materials")) if self._wanted == "skinned" else []
+        return bound, by_material(whole, geometry, sources, self._looks, self._messages)
 
     def _points(self, node: int) -> Array:
         points = array(self._meshes[node], "vertices").reshape(-1, 3)
         return points if len(points) else np.zeros((1, 3))
-
-    def _by_material(self, whole: Part, geometry: Geometry, node: int) -> list[Part]:
-        """The faces of a mesh, apart by material, each with only the vertices that these need; motion has none."""
-        sources = list(items(self._nodes.sources[node], "materials")) if self._wanted == "skinned" else []
-        found = []
-        for number in np.unique(geometry.material):
-            index = self._looks.index(sources[number] if number < len(sources) else None)
-            found.append(self._of_material(whole, geometry, geometry.material == number, index))
-        return found
-
-    def _of_material(self, whole: Part, geometry: Geometry, chosen: Array, index: int) -> Part:
-        look = self._looks.read[index]
-        corners = geometry.triangles[chosen]
-        used, faces = np.unique(whole.faces[chosen], return_inverse=True)
-        part = replace(
-            whole,
-            positions=whole.positions[used],
-            faces=faces.reshape(-1, 3),
-            uv_faces=whole.uv_faces[chosen],
-            material=index,
-            joints=whole.joints[used],
-            weights=whole.weights[used],
-        )
-        if geometry.colors is not None:
-            self._messages.add("Vertex colours are multiplied into the base colour, of meshes: {}.", whole.node)
-            part = replace(part, colors=geometry.colors[corners])
-        uv = geometry.coordinates(look.uv_set)
-        if uv is None:
-            if look.needed:
-                self._messages.add(
-                    "Meshes without the texture coordinates that their material asks for: {}.", whole.node
-                )
-            return part
-        coordinates, uv_faces = _textured(uv, corners, look)
-        return replace(part, uv=coordinates, uv_faces=uv_faces)
 
     def _bare_skins(self) -> list[Skin]:
         """Joints that motion may be on, bound as they rest: all bones, and the tree of nodes that clips move most."""
@@ -195,10 +164,3 @@ class Reader:
             if node in take.local:
                 local[:, n] = take.local[node]
         return Motion(take.name, take.rate, chain(local, parents))
-
-
-def _textured(uv: tuple[Array, Array], corners: Array, look: Look) -> tuple[Array, Array]:
-    """Texture coordinates [T, 2], v down, of triangles whose corners [F, 3] are given, and their index [F, 3]."""
-    used, faces = np.unique(uv[1][corners], return_inverse=True)
-    moved = uv[0][used, :2] @ look.matrix[:, :2].T + look.matrix[:, 2]
-    return np.stack([moved[:, 0], 1 - moved[:, 1]], axis=1), faces.reshape(-1, 3)
