@@ -77,6 +77,13 @@ def test_the_alpha_of_a_texture_counts_where_it_is_said_to_be_the_opacity(tmp_pa
     assert clear.alpha_mode == "blend"
 
 
+def test_a_shader_of_its_own_is_read_by_the_name_of_its_property(tmp_path: Path) -> None:
+    fbx, _, body = figure()
+    fbx.texture(fbx.material(body), FOREIGN, picture((10, 60, 200, 100)), "Maya|DiffuseTexture")
+    found, _ = material(fbx, tmp_path)
+    assert found.image[0, 0].tolist() == [10, 60, 200, 100]
+
+
 def test_opacity_0_on_every_material_means_nothing(tmp_path: Path) -> None:
     fbx, _, body = figure()
     fbx.material(body, DiffuseColor=(1, 0, 0), TransparentColor=(1, 1, 1), TransparencyFactor=1.0)

@@ -60,12 +60,13 @@ class Looks:
 
     def _look(self, source: Any) -> Look:
         name = str(get(source, "name"))
-        texture, picture = self._picture(_base_texture(source))
+        base = _texture(source, "pbr.base_color") or _texture(source, "fbx.diffuse_color")
+        texture, picture = self._picture(base or _unknown_base(source))
         if texture is None or picture is None:
             look = Look(Material(name, pictures.flat(self._color(source, "pbr.base_color", "pbr.base_factor"))))
         else:
             look = _placed(Material(name, picture), texture)
-        look = self._with_opacity(look, source)
+        look = self._with_opacity(look, source, own=base is None and texture is not None)
         glow = self._glow(source)
         if glow is None:
             return look
@@ -104,11 +105,14 @@ class Looks:
         color = self._color(source, "pbr.emission_color", "pbr.emission_factor")
         return pictures.flat(color) if color[:3].any() else None
 
-    def _with_opacity(self, look: Look, source: Any) -> Look:
-        """The look with its opacity: a picture's, else a number; without either it is opaque, whatever its alpha."""
-        found = (
-            _texture(source, name) for name in ("pbr.opacity", "fbx.transparency_color", "fbx.transparency_factor")
-        )
+    def _with_opacity(self, look: Look, source: Any, *, own: bool) -> Look:
+        """The look with its opacity: a picture's, else a number; without either it is opaque, whatever its alpha.
+
+        With `own`, of a shader that ufbx does not know, the alpha of the base colour counts.
+        """
+        if own and (look.material.image[..., 3] < 255).any():
+            return look
+        found = (_texture(source, name) for name in OPACITY)
         texture, picture = self._picture(next((one for one in found if one is not None), None))
         image = pictures.opaque(look.material.image)
         if texture is not None and picture is not None:
@@ -127,11 +131,8 @@ def _texture(source: Any, name: str) -> Any | None:
     return get(source, f"{name}.texture") if get(source, f"{name}.texture_enabled") else None
 
 
-def _base_texture(source: Any) -> Any | None:
-    """The texture of the base colour; of shaders that ufbx does not know, the one whose property is called so."""
-    known = _texture(source, "pbr.base_color") or _texture(source, "fbx.diffuse_color")
-    if known is not None:
-        return known
+def _unknown_base(source: Any) -> Any | None:
+    """The texture of a shader that ufbx does not know whose property is called as one of the base colour."""
     for texture in items(source, "textures"):
         if BASE.search(str(get(texture, "material_prop"))):
             return get(texture, "texture")
