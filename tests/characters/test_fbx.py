@@ -228,6 +228,14 @@ def test_hidden_meshes_are_left_out(tmp_path: Path) -> None:
     assert_is_column(read, BOUND)
 
 
+def test_hiding_every_mesh_means_nothing(tmp_path: Path) -> None:
+    fbx = Fbx()
+    bones = skeleton(fbx)
+    body = fbx.model("body", "Mesh", Visibility=0)
+    fbx.skin(fbx.mesh(body, POINTS), bones, binds(fbx), weights=np.eye(3)[fbx_files.BONES])
+    assert_is_column(read_surfaces(fbx.save(tmp_path / "body.fbx")), BOUND)
+
+
 def test_a_quad_that_is_not_convex_is_cut_inside(tmp_path: Path) -> None:
     fbx = Fbx()
     bones = skeleton(fbx)

@@ -50,6 +50,8 @@ class Reader:
             for number, source in enumerate(self._nodes.sources)
             if number and get(source, "mesh") is not None
         }
+        hidden = self._nodes.tree.hidden
+        self._hidden = set() if self._meshes.keys() <= hidden else hidden  # files before 6.0 state it of everything
 
     def scenes(self) -> list[Scene]:
         """As `read_scenes`."""
@@ -84,7 +86,7 @@ class Reader:
 
     def _is_drawn(self, node: int, *, skinned: bool) -> bool:
         flat = np.linalg.det(self._nodes.tree.world[node][:3, :3]) == 0
-        if node in self._nodes.tree.hidden or (flat and not skinned):
+        if node in self._hidden or (flat and not skinned):
             self._messages.add("Meshes that the file hides are left out: {}.", self._nodes.names[node])
             return False
         if node in self._nodes.details:
