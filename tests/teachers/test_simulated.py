@@ -24,7 +24,7 @@ from mua.teachers.simulated.folds import Folds
 from mua.teachers.simulated.simulation import Simulation
 from mua.teachers.simulated.still import StillTeacher
 from mua.teachers.simulated.teacher import SimulatedTeacher
-from mua.texture import rims
+from mua.texture import ends, rims
 
 SIZE = 48
 SINGLE = 32 * float(np.finfo(np.float32).eps)  # metres; sums of some ten terms of up to 2 m
@@ -50,9 +50,10 @@ def teacher() -> SimulatedTeacher:
 
 @pytest.fixture
 def unsunk(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Splats lie on the surface and not a little below it, at their texels' points along the borders of charts too."""
+    """Splats lie on the surface and not a little below it, at their texels' points along all borders too."""
     monkeypatch.setattr(texels, "SINK", 0.0)
     monkeypatch.setattr(rims, "FARTHEST", 0.0)
+    monkeypatch.setattr(ends, "LEAST", 1.0)
 
 
 def test_whole_frames_have_the_shapes_of_the_rig(teacher: SimulatedTeacher) -> None:
