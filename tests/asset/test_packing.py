@@ -7,8 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from malformed import malformed, put, stream
+from malformed import malformed, put
 from synthetic_avatar import synthetic_avatar
+from unpackable import stream
 
 from mua.arrays import Array
 from mua.asset.flatbuffer import FormatError, parse

@@ -7,8 +7,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from malformed import DAMAGED, MALFORMED, UNPACKABLE, flipped, malformed, seal_unread, times
+from damaged import DAMAGED
+from malformed import MALFORMED, flipped, malformed, seal_unread, times
 from synthetic_avatar import synthetic_avatar, with_surface
+from unpackable import UNPACKABLE
 
 from mua.asset.flatbuffer import FormatError, Tree, parse
 from mua.asset.read import decode_tree, parse_checked, read

@@ -120,7 +120,6 @@ def test_a_final_fit_follows_the_users_frames_more_closely(tmp_path: Path) -> No
         )
         with torch.no_grad():
             errors[name] = (mlp(inputs) - shown)[own].norm(dim=1).median()
-    print(errors)
     assert errors["final"] < 0.8 * errors["start"]
 
 

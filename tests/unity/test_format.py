@@ -6,9 +6,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from csharp import RUNTIME, CSharp
+from damaged import DAMAGED
 from format_program import values
-from malformed import DAMAGED, MALFORMED, UNPACKABLE, malformed
+from malformed import MALFORMED, malformed
 from synthetic_avatar import sparse_avatar, synthetic_avatar, with_surface
+from unpackable import UNPACKABLE
 
 from mua.asset.flatbuffer import FormatError
 from mua.asset.read import decode_tree, parse_checked

@@ -10,9 +10,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from malformed import DAMAGED, MALFORMED, UNPACKABLE, malformed
+from damaged import DAMAGED
+from malformed import MALFORMED, malformed
 from mutants import mutant, packed_mutant
 from synthetic_avatar import sparse_avatar, synthetic_avatar, with_random_poses, with_surface
+from unpackable import UNPACKABLE
 
 from mua.arrays import Array
 from mua.asset import write

@@ -11,8 +11,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from malformed import malformed, trailing
+from malformed import malformed
 from synthetic_avatar import synthetic_avatar, with_surface
+from unpackable import trailing
 from web.browser import Page
 from web.pages import ELEMENT, SENTENCE
 from web.test_modules import node, pytestmark  # noqa: F401  needs Node
