@@ -16,6 +16,7 @@ static const float INSIDE = 0.45; // of the colour, on the inside of an open sur
 static const float TURNED = 0.25; // cosine past the outline from which on a surface is surely seen from inside
 static const float BEHIND_SPLATS = 0.01; // metres that a surface yields in depth, so that the splats on it cover it
 static const float SMALLEST_LENGTH = 1e-20; // keeps the direction of a vanishing normal finite
+static const uint MASK_ROW = 256; // bytes: what graphics interfaces copy from a texture has rows of multiples of it
 static const float NEAREST_W = 1e-3; // clip w at which a bone that passes the camera is cut
 
 struct SurfaceVaryings
@@ -102,7 +103,8 @@ float4 splineWeights(float t)
     return float4(s * s * s, 4 - 6 * t * t + 3 * t * t * t, 4 - 6 * s * s + 3 * s * s * s, t * t * t) / 6;
 }
 
-// Covered share of the ground at `at`, in samples of a square mask of bytes, four to a word; nothing outside it.
+// Covered share of the ground at `at`, in samples of a square mask of bytes, four to a word, whose rows are MASK_ROW
+// apart; nothing outside it.
 float shadowCover(float2 at, uint size, StructuredBuffer<uint> mask)
 {
     float2 low = floor(at - 0.5);
@@ -114,7 +116,7 @@ float shadowCover(float2 at, uint size, StructuredBuffer<uint> mask)
     {
         int2 place = int2(low) + int2(i % 4, i / 4) - 1;
         bool inside = all(place >= 0) && all(place < int(size));
-        uint index = inside ? uint(place.y) * size + uint(place.x) : 0;
+        uint index = inside ? uint(place.y) * MASK_ROW + uint(place.x) : 0;
         float covered = ((mask[index / 4] >> (8 * (index % 4))) & 0xff) / 255.0;
         cover += inside ? covered * across[i % 4] * down[i / 4] : 0;
     }

@@ -32,6 +32,7 @@ from mua.player.overlays import (
     JOINT_COLOR,
     JOINT_WIDTH,
     LIGHT,
+    MASK_ROW,
     MASK_SIZE,
     OUTLINE,
     OUTLINE_COLOR,
@@ -215,7 +216,8 @@ def test_a_shadow_fades_where_its_mask_ends(device: Device, tmp_path: Path) -> N
     encoder = device.wgpu.create_command_encoder()
     attachment = {"view": target.create_view(), "load_op": "clear", "store_op": "store"}
     render_pass = encoder.begin_render_pass(color_attachments=[attachment])
-    held = device.buffer(mask.view(np.uint32), name="mask")
+    rows_apart = np.pad(mask, ((0, 0), (0, MASK_ROW - size)), constant_values=255)
+    held = device.buffer(rows_apart.view(np.uint32), name="mask")
     drawing.bind(render_pass, {"mask": held}, size=size, samples=samples, first=-3.0)
     render_pass.draw(3)
     render_pass.end()

@@ -31,7 +31,8 @@ BONE_WIDTH, JOINT_WIDTH, OUTLINE = 2.5, 5.0, 1.5  # pixels; an outline is visibl
 
 LIGHT = (-0.35, -1.0, -0.45)  # from above, the character's left and front: the shadow falls behind it
 DARKNESS = 0.45  # opacity of the full shadow on the ground
-MASK_SIZE = 512  # samples along the shadow's square
+MASK_SIZE = 128  # samples along the shadow's square: its edge is as soft as two of them
+MASK_ROW = 256  # bytes from one row of samples to the next, MASK_ROW of surface_draw.hlsl
 GROUND_FRAMES = 32  # frames of a clip in which the lowest point is sought
 BELOW_GROUND = 0.1  # share of these that may reach below it: captured feet are noisy, and some clips leap or climb
 MARGIN = 0.06  # margin round the shadow as a share of its size, so that its soft edge is not cut off
@@ -50,7 +51,7 @@ class Overlays:
         self._avatar = avatar = self._posed.avatar.avatar
         self._make_skeleton()
         self._template = _indices(device, avatar.rig.mesh.faces)
-        self._mask = device.buffer(MASK_SIZE * MASK_SIZE, name="mask")
+        self._mask = device.buffer(MASK_SIZE * MASK_ROW, name="mask")
         usage = wgpu.TextureUsage.RENDER_ATTACHMENT | wgpu.TextureUsage.COPY_SRC
         size = (MASK_SIZE, MASK_SIZE, 1)
         self._mask_texture = device.wgpu.create_texture(size=size, format="r8unorm", usage=usage)
@@ -110,7 +111,7 @@ class Overlays:
         render_pass.end()
         encoder.copy_texture_to_buffer(
             {"texture": self._mask_texture},
-            {"buffer": self._mask.raw, "bytes_per_row": MASK_SIZE, "rows_per_image": MASK_SIZE},
+            {"buffer": self._mask.raw, "bytes_per_row": MASK_ROW, "rows_per_image": MASK_SIZE},
             (MASK_SIZE, MASK_SIZE, 1),
         )
 

@@ -24,7 +24,8 @@ const OUTLINE_COLOR = [0.12, 0.1, 0.08, 1];
 const [BONE_WIDTH, JOINT_WIDTH, OUTLINE] = [2.5, 5, 1.5]; // pixels
 const LIGHT = [-0.35, -1, -0.45]; // from above, the character's left and front
 const DARKNESS = 0.45; // of the ground in full shadow
-const MASK_SIZE = 512; // samples along the shadow's square
+const MASK_SIZE = 128; // samples along the shadow's square: its edge is as soft as two of them
+const MASK_ROW = 256; // bytes from one row of samples to the next, MASK_ROW of surface_draw.hlsl
 const GROUND_FRAMES = 32; // of a clip, in which the lowest point is sought
 const BELOW_GROUND = 0.1; // of these that may reach below it
 const MARGIN = 0.06; // of its size round the shadow
@@ -63,7 +64,7 @@ export class Overlays {
     this.template = this.indices(avatar.template.faces, "template");
     this.joints = memory.buffer(16 * avatar.skeleton.names.length, "joints");
     this.strokes = strokes(memory, avatar.skeleton.parents);
-    this.mask = memory.buffer(MASK_SIZE * MASK_SIZE, "mask");
+    this.mask = memory.buffer(MASK_SIZE * MASK_ROW, "mask");
     this.maskTexture = memory.texture([MASK_SIZE, MASK_SIZE], "r8unorm", GPUTextureUsage.COPY_SRC);
     this.area = [0, 0, 1, 0];
     /** @type {{rings: Record<string, GPUBuffer>, indices: Indices} | null} */
@@ -92,7 +93,7 @@ export class Overlays {
     this.pipelines.shadow.bind(pass, this.posed(), { light: [...LIGHT, DARKNESS], area: this.area });
     drawIndexed(pass, this.template);
     pass.end();
-    const layout = { bytesPerRow: MASK_SIZE, rowsPerImage: MASK_SIZE };
+    const layout = { bytesPerRow: MASK_ROW, rowsPerImage: MASK_SIZE };
     encoder.copyTextureToBuffer({ texture: this.maskTexture }, { buffer: this.mask, ...layout }, [
       MASK_SIZE,
       MASK_SIZE,

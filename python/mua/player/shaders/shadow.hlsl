@@ -5,7 +5,7 @@
 
 StructuredBuffer<float4> vertex_dq; // [V, 2] real and dual part, bind pose to world
 StructuredBuffer<float> mesh; // [V, 3] canonical, metres
-StructuredBuffer<uint> mask; // [size, size] bytes, four to a word
+StructuredBuffer<uint> mask; // [size, MASK_ROW] bytes, of which the first `size` of a row count, four to a word
 
 cbuffer Constants
 {

@@ -196,7 +196,7 @@ fn shadowCover_0( _S1 : vec2<f32>,  _S2 : u32) -> f32
         var index_0 : u32;
         if(inside_0)
         {
-            index_0 = u32(place_0.y) * _S2 + u32(place_0.x);
+            index_0 = u32(place_0.y) * u32(256) + u32(place_0.x);
         }
         else
         {
