@@ -149,8 +149,13 @@ def fit_local(
 def whitening(
     inputs: Tensor,  # [F, D]
 ) -> Tensor:
-    """The map [D, D] to directions of equal variance, with a floor that does not raise noise to their level."""
-    variance, directions = torch.linalg.eigh(torch.cov(inputs.double().T, correction=0).reshape(inputs.shape[1], -1))
+    """The map [D, min(F, D)] to directions of equal variance, with a floor that does not raise noise to their level."""
+    away = (inputs - inputs.mean(0)).double() / len(inputs) ** 0.5
+    if len(inputs) < inputs.shape[1]:  # in other directions nothing varies
+        _, spread, rows = torch.linalg.svd(away, full_matrices=False)
+        variance, directions = spread.square(), rows.T
+    else:
+        variance, directions = torch.linalg.eigh(away.T @ away)
     return (directions / (variance.clamp(min=0) + INPUT_FLOOR).sqrt()).to(inputs)
 
 

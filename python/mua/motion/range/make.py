@@ -24,7 +24,7 @@ from mua.rig.character import Character
 from mua.rig.moving import moving_joints
 
 ROUND = 160  # frames recorded of all clips, after which another round of them shows more than more of these
-PLAYED = 16  # frames for each that is recorded, at most: a teacher plays them all
+PLAYED = 10  # frames for each that is recorded, at most: a teacher plays them all
 UPRIGHT = 0.7  # cosine of the lean of a person's trunk in the bind pose
 STILL = np.radians(1)  # a joint whose rotation varies less in all clips is not moved by them
 
