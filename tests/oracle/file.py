@@ -1,84 +1,65 @@
-"""Section 1 of schemas/README.md: a file as nested dicts, its tensors as arrays; the tables are those of the schema.
+"""A `.muaavatar` file as nested records: the FlatBuffer by the text of its schema, its tensors as arrays.
 
-What stands in tests/oracle is written from that page and muaavatar.fbs alone, in float64 and plain rather than fast.
+What stands in tests/oracle is written from schemas/README.md and muaavatar.fbs alone; it is plain rather than fast.
 """
 
 import re
-import struct
 import zlib
 from pathlib import Path
+from types import SimpleNamespace as Record
 from typing import Any
 
 import numpy as np
+from flatbuffers.table import Table
 
-SCHEMA = Path(__file__).resolve().parents[2] / "schemas" / "muaavatar.fbs"
-WIDTHS = {"bool": "?", "ubyte": "u1", "ushort": "<u2", "uint": "<u4", "float": "<f4", "double": "<f8"}
-F32, F16, I8, I32 = range(4)  # enum ElementType
 Array = np.ndarray[Any, np.dtype[Any]]
-Tree = dict[str, Any]
+SCHEMA = Path(__file__).resolve().parents[2] / "schemas" / "muaavatar.fbs"
+TEXT = re.sub(r"//.*|\(.*?\)", "", SCHEMA.read_text())
+ENUMS = dict(re.findall(r"enum (\w+) : (\w+)", TEXT))  # stored as numbers
+TABLES = {
+    table: re.findall(r"(\w+): (\[?\w+\]?)", body) for table, body in re.findall(r"table (\w+) \{(.*?)\}", TEXT, re.S)
+}
+NUMBERS = {"bool": "?", "ubyte": "u1", "ushort": "<u2", "uint": "<u4", "float": "<f4", "double": "<f8"}
+ELEMENTS = ["<f4", "<f2", "i1", "<i4"]  # in the order of ElementType
 
 
-def _schema() -> dict[str, list[tuple[str, str]]]:
-    """Names and kinds of the fields of each table, in the order of their slots."""
-    text = re.sub(r"//.*", "", SCHEMA.read_text())
-    bodies = re.findall(r"table\s+(\w+)\s*\{([^}]*)\}", text)
-    return {table: re.findall(r"(\w+)\s*:\s*(\[?\w+\]?)", re.sub(r"\([^)]*\)", "", body)) for table, body in bodies}
+def load(path: Path) -> Any:
+    """The table Avatar of a file."""
+    return read_value(path.read_bytes(), 0, "Avatar")
 
 
-FIELDS = _schema()
+def read_table(data: bytes, at: int, name: str) -> Any:
+    """A table; absent numbers are 0, other absent fields None."""
+    record = Record()
+    for slot, (field, kind) in enumerate(TABLES[name]):
+        kind, offset = ENUMS.get(kind, kind), Table(data, at).Offset(4 + 2 * slot)
+        absent = 0 if kind in NUMBERS else None
+        setattr(record, field, read_value(data, at + offset, kind) if offset else absent)
+    return expand(record) if name == "Tensor" else record
 
 
-def load(path: Path) -> Tree:
-    """The root table; absent fields are absent."""
-    content = path.read_bytes()
-    return _table(content, _word(content, 0), "Avatar")
-
-
-def _word(content: bytes, at: int) -> int:
-    return int(struct.unpack_from("<I", content, at)[0])
-
-
-def _table(content: bytes, start: int, name: str) -> Any:
-    vtable = start - struct.unpack_from("<i", content, start)[0]
-    slots = (struct.unpack_from("<H", content, vtable)[0] - 4) // 2
-    found: Tree = {}
-    for slot, (field, kind) in enumerate(FIELDS[name]):
-        [offset] = struct.unpack_from("<H", content, vtable + 4 + 2 * slot) if slot < slots else [0]
-        if offset:
-            found[field] = _value(content, start + offset, kind)
-        elif kind in WIDTHS or not (kind.startswith("[") or kind in FIELDS or kind == "string"):
-            found[field] = 0
-    return _tensor(found) if name == "Tensor" else found
-
-
-def _value(content: bytes, at: int, kind: str) -> Any:
-    inner = kind.strip("[]")
-    if inner == kind and kind != "string" and kind not in FIELDS:
-        return np.frombuffer(content, WIDTHS.get(kind, "u1"), 1, at)[0].item()  # an enum is a ubyte
-    start = at + _word(content, at)
-    if kind in FIELDS:
-        return _table(content, start, kind)
-    count = _word(content, start)
+def read_value(data: bytes, at: int, kind: str) -> Any:
+    """A value of a type of the schema."""
+    if kind in NUMBERS:
+        return np.frombuffer(data, NUMBERS[kind], 1, at)[0].item()
+    start = Table(data, at).Indirect(at)
+    if kind in TABLES:
+        return read_table(data, start, kind)
+    count, start, item = int(np.frombuffer(data, "<u4", 1, start)[0]), start + 4, kind.strip("[]")
     if kind == "string":
-        return content[start + 4 : start + 4 + count].decode()
-    if inner in WIDTHS:
-        return np.frombuffer(content, WIDTHS[inner], count, start + 4)
-    return [_value(content, start + 4 + 4 * i, inner) for i in range(count)]
+        return data[start : start + count].decode()
+    if item in NUMBERS:
+        return np.frombuffer(data, NUMBERS[item], count, start)
+    return [read_value(data, start + 4 * index, item) for index in range(count)]
 
 
-def _tensor(fields: Tree) -> Array:
-    """1.1, 1.5"""
-    kind = {F32: "<f4", F16: "<f2", I8: "i1", I32: "<i4"}[fields["type"]]
-    count, width = int(np.prod(fields["shape"], dtype=int)), np.dtype(kind).itemsize
-    data = fields["data"].tobytes()
-    if fields["packing"] and count:
-        planes = np.frombuffer(zlib.decompress(data, -15), np.uint8).reshape(width, count)
-        data = planes.T.tobytes()
-    elif fields["packing"]:
-        data = b""
-    values = np.frombuffer(data, kind)
-    if fields["type"] == I32:
-        return values.reshape(fields["shape"])
-    scale = fields["scale"].astype(float) if fields["type"] == I8 else np.ones(1)
-    each = np.arange(count) * len(scale) // max(count, 1)
-    return np.asarray(values.astype(float) * scale[each]).reshape(fields["shape"])
+def expand(tensor: Record) -> Array:
+    """1.1, and 1.5 where it is packed: the values, as f64 or 64-bit integers."""
+    kind, count, data = np.dtype(ELEMENTS[tensor.type]), int(np.prod(tensor.shape, dtype=np.int64)), tensor.data
+    if tensor.packing:
+        planes = zlib.decompress(data.tobytes(), wbits=-15) if count else b""
+        data = np.frombuffer(planes, np.uint8).reshape(kind.itemsize, count).T.ravel()
+    values = data.view(kind).astype(np.int64 if kind == "<i4" else np.float64)
+    if kind == "i1":
+        values = values * np.repeat(tensor.scale.astype(np.float64), count // max(len(tensor.scale), 1))
+    return values.reshape(tensor.shape)

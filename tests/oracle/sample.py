@@ -1,4 +1,4 @@
-"""What every section of schemas/README.md makes of one frame of the sample: PYTHONPATH=tests python -m oracle.sample.
+"""What every section makes of one frame of the worked sample: PYTHONPATH=tests python -m oracle.sample.
 
 A line is the section, a name, the sides, the sum of all magnitudes and the first four numbers.
 """
@@ -6,84 +6,71 @@ A line is the section, a name, the sides, the sum of all magnitudes and the firs
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
-from oracle import level, motion, splats, surface, texture
-from oracle.file import Array, Tree, load
+from oracle import descriptor, drawing, motion, splats, surface, texture
+from oracle.file import Record, load
 
 SAMPLE = Path(__file__).resolve().parents[1] / "golden" / "packed.muaavatar"
 FRAME = 3  # a frame of the first clip at the rate of the encoding
-CAMERA = np.array([0.5, 1.0, 3.0])  # looks along -Z
-NEAR = 0.1
+VIEW = np.array([[1, 0, 0, -0.5], [0, 1, 0, -1], [0, 0, 1, -3], [0, 0, 0, 1]])  # from (0.5, 1, 3) along -Z
+PROJECTION = np.array([[3, 0, 0.1, 0], [0, 4, -0.2, 0], [0, 0, -1, -0.2], [0, 0, -1, 0]])
+CAMERA = drawing.Camera(VIEW, PROJECTION, near=0.1, screen=(64, 48))
 
 
-def lines(avatar: Tree) -> Iterator[str]:
-    for section, name, values in _numbers(avatar):
-        held = np.asarray(values, dtype=float)
-        sides = " x ".join(map(str, held.shape)) or "1"
-        shown = " ".join(f"{value:.6g}" for value in held.ravel()[:4])
-        yield f"{section:4} {name:34} {sides:14} {np.abs(held).sum():.6g} | {shown}"
+def lines(avatar: Record) -> Iterator[str]:
+    for section, name, value in numbers(avatar):
+        array = np.atleast_1d(np.asarray(value, np.float64))
+        sides, first = " x ".join(map(str, array.shape)), " ".join(f"{number:g}" for number in array.flat[:4])
+        yield f"{section:4} {name:34} {sides:14} {np.abs(array).sum():g} | {first}"
 
 
-def _numbers(avatar: Tree) -> Iterator[tuple[str, str, Array | float]]:
-    clip, geometry = avatar["clips"][0], avatar["geometry"]
-    yield "1.1", "clips[0].rotations", clip["rotations"]
-    yield "1.5", "geometry.ll_basis", geometry["ll_basis"]
-    yield "2.1", "l0", motion.bind_pose(avatar["skeleton"])[0]
-    yield "2.2", "l of stored frame 1", motion.stored_frame(avatar["skeleton"], clip, 1)[0]
-    yield "2.2", "t of stored frame 1", motion.stored_frame(avatar["skeleton"], clip, 1)[1]
-    poses = motion.frames(avatar, clip)
-    yield "2.3", "frames", float(len(poses))
-    yield from ((section, f"{name} of frame {FRAME}", value) for section, name, value in _posed(avatar, poses))
-    x = motion.bounded(
-        avatar, motion.components(avatar, motion.descriptor(avatar, motion.window(avatar, poses, FRAME)))
-    )
-    yield from _textured(avatar, x)
-    yield from _drawn(avatar, splats.decode(avatar, poses, FRAME))
-    yield "8.2", "surface triangles", np.array(surface.triangles(avatar))
-    for number in range(1, len(avatar["texels"]["levels"]) + 1):
-        avatar = level.coarser(avatar)
-        yield "9.1", f"texels of level {number}", avatar["texels"]["texels"]
-        yield "9.2", f"triangles of level {number}", avatar["texels"]["triangles"]
-        yield "9.3", f"geometry.static_offset of level {number}", avatar["geometry"]["static_offset"]
-        yield "9.4", f"T of level {number}", splats.decode(avatar, poses, FRAME).texture
-
-
-def _posed(avatar: Tree, poses: list[motion.Pose]) -> Iterator[tuple[str, str, Array | float]]:
-    yield "2.3", "l", poses[FRAME][0]
-    yield "2.4", "W", motion.world(avatar["skeleton"], poses[FRAME])[0]
-    yield "2.4", "P", motion.world(avatar["skeleton"], poses[FRAME])[1]
-    d = motion.descriptor(avatar, motion.window(avatar, poses, FRAME))
-    z = motion.components(avatar, d)
-    yield from (("3.4", "d", d), ("3.5", "z", z), ("3.6", "x", motion.bounded(avatar, z)))
-    yield "3.7", "outside", motion.outside(z, motion.bounded(avatar, z))
-
-
-def _textured(avatar: Tree, x: Array) -> Iterator[tuple[str, str, Array]]:
-    geometry = avatar["geometry"]
-    alphas, A = texture.coefficients(geometry, x), texture.image(avatar, geometry, x)
-    yield "4.1", "y of geometry", texture.network(geometry["mlp"], x)
-    yield "4.2", "v", texture.canonical(avatar["coarse"], x)
-    yield "4.3", "alpha of geometry", alphas[0]
-    yield "5.1", "LL of geometry", texture.low(geometry, alphas[0])
-    yield "5.1", "D_0 of geometry", texture.detail(geometry["details"][0], alphas[1])
-    yield "5.2", "A_levels of geometry", A
-    yield "5.3", "T of geometry", texture.at_texels(avatar, geometry, A)
-    yield "5.5", "b_0, b_1", texture.places(avatar)
-    yield "5.6", "one-sided", texture.one_sided(avatar["texels"])
-
-
-def _drawn(avatar: Tree, found: splats.Splats) -> Iterator[tuple[str, str, Array]]:
-    view = np.eye(4)
-    view[:3, 3] = -CAMERA
+def numbers(avatar: Record) -> Iterator[tuple[str, str, Any]]:
+    skeleton, geometry, clip = avatar.skeleton, avatar.geometry, avatar.clips[0]
+    yield "1.1", "clips[0].rotations", clip.rotations
+    yield "1.5", "geometry.ll_basis", geometry.ll_basis
+    yield "2.1", "l0", motion.bind_pose(skeleton).rotations
+    yield "2.2", "l of stored frame 1", motion.stored_pose(skeleton, clip, 1).rotations
+    yield "2.2", "t of stored frame 1", motion.stored_pose(skeleton, clip, 1).translations
+    poses = motion.poses(avatar, clip)
+    yield "2.3", "frames", len(poses)
+    yield "2.3", f"l of frame {FRAME}", poses[FRAME].rotations
+    yield "2.4", f"W of frame {FRAME}", motion.in_the_world(skeleton, poses[FRAME])[0]
+    yield "2.4", f"P of frame {FRAME}", motion.in_the_world(skeleton, poses[FRAME])[1]
+    d = descriptor.describe(avatar, poses, FRAME)
+    z = descriptor.components(avatar.encoding, d)
+    x = descriptor.bound(avatar.encoding, z)
+    yield "3.4", f"d of frame {FRAME}", d
+    yield "3.5", f"z of frame {FRAME}", z
+    yield "3.6", f"x of frame {FRAME}", x
+    yield "3.7", f"outside of frame {FRAME}", descriptor.outside(z, x)
+    found = splats.decode(avatar, poses, FRAME)
+    yield "4.1", "y of geometry", texture.network(geometry.mlp, x)
+    yield "4.2", "v", found.canonical
+    yield "4.3", "alpha of geometry", texture.coefficients(geometry, x)[0]
+    yield "5.1", "LL of geometry", texture.subbands(geometry, x)[0]
+    yield "5.1", "D_0 of geometry", texture.subbands(geometry, x)[1][0]
+    yield "5.2", "A_levels of geometry", texture.image(avatar.wavelet, geometry, x)
+    yield "5.3", "T", found.texture
+    yield "5.5", "b_0, b_1", found.texels.barycentrics
+    yield "5.6", "one-sided", found.texels.one_sided
     yield "6.1", "K", found.joints
     yield "6.3", "vertices' dual quaternions", found.vertices
-    yield "6.4", "Q", found.dual
-    for name in ("centres", "rotations", "scales", "opacities"):
-        yield "6.5", name, getattr(found, name)
-    yield "6.6", f"colours from {CAMERA.tolist()}", found.colours(CAMERA)
-    yield "7.2", "seen from behind", splats.behind(avatar, found, view)
-    yield "7.3", f"keys, near = {NEAR}", splats.keys(avatar, found, view, NEAR)
+    yield "6.4", "Q", found.motions
+    yield from (("6.5", name, getattr(found, name)) for name in ("centres", "rotations", "scales", "opacities"))
+    yield "6.6", f"colours from {CAMERA.eye().tolist()}", found.colours(CAMERA.eye())
+    yield "7.1", "pixel", drawing.ellipses(found, CAMERA)[0]
+    yield "7.2", "seen from behind", drawing.behind(found, CAMERA)
+    yield "7.3", f"keys, near = {CAMERA.near}", drawing.keys(found, CAMERA)
+    yield "7.3", "image", drawing.draw(found, CAMERA, np.zeros((48, 64, 3)))
+    yield "8.2", "surface triangles", surface.triangles(avatar)
+    for number in range(1, 1 + len(avatar.texels.levels)):
+        found = splats.decode(avatar, poses, FRAME, number)
+        yield "9.1", f"texels of level {number}", found.texels.texels
+        yield "9.2", f"triangles of level {number}", found.texels.triangles
+        yield "9.3", f"geometry.static_offset of level {number}", found.texels.static_offset[:11]
+        yield "9.4", f"T of level {number}", found.texture
 
 
 if __name__ == "__main__":

@@ -1,39 +1,39 @@
-"""Section 8 of schemas/README.md: the triangles of a file's surface, as corners among the valid texels."""
+"""The triangles between the texels: section 8."""
 
-from collections.abc import Iterator
-
-from oracle.file import Tree
-
-Triangle = tuple[int, ...]
+import numpy as np
+from oracle.file import Array, Record
+from oracle.quaternions import LEAST
 
 
-def triangles(avatar: Tree) -> list[Triangle]:
-    codes = [run % 16 for run in map(int, avatar["surface"]["runs"]) for _ in range(run // 16 + 1)]  # 8.2
-    found: list[Triangle] = []
-    for code, (a, b, c, d) in zip(codes, _blocks(avatar), strict=True):
-        two = [(a, b, c), (b, d, c)] if code & 4 else [(a, b, d), (a, d, c)]
-        found += [t[::-1] if code & 8 else t for bit, t in zip((1, 2), two, strict=True) if code & bit]
-    strips: list[list[int]] = [[]]
-    for entry in map(int, avatar["surface"]["strips"]):
-        strips = [*strips, []] if entry == -1 else [*strips[:-1], [*strips[-1], entry]]
-    return found + [triangle for strip in strips for triangle in _strip(strip)]
+def blocks(texels: Array, size: int) -> Array:
+    """8.1: the texels (a, b, c, d) of each block [K, 4], -1 for one that is not valid."""
+    grid = np.full((size, size), -1)
+    grid.flat[texels] = np.arange(len(texels))
+    corners = np.stack([grid[:-1, :-1], grid[:-1, 1:], grid[1:, :-1], grid[1:, 1:]], axis=-1).reshape(-1, 4)
+    return corners[np.sum(corners >= 0, axis=-1) >= 3]
 
 
-def _blocks(avatar: Tree) -> Iterator[list[int]]:
-    """8.1"""
-    size = avatar["texels"]["size"]
-    number = {int(texel): e for e, texel in enumerate(avatar["texels"]["texels"])}
-    for row in range(size - 1):
-        for col in range(size - 1):
-            four = [number.get(r * size + c, -1) for r in (row, row + 1) for c in (col, col + 1)]
-            if four.count(-1) <= 1:
-                yield four
+def triangles(avatar: Record) -> Array:
+    """8.2, then 8.3: [M, 3] corners among the texels."""
+    runs, found = avatar.surface.runs, []
+    corners = blocks(avatar.texels.texels, avatar.texels.size).tolist()
+    for code, (a, b, c, d) in zip(np.repeat(runs % 16, runs // 16 + 1), corners, strict=True):
+        for bit, triangle in enumerate([(a, b, c), (b, d, c)] if code & 4 else [(a, b, d), (a, d, c)]):
+            if code >> bit & 1:
+                found.append(triangle[::-1] if code & 8 else triangle)
+    edge: list[int] = []
+    for entry in avatar.surface.strips.tolist():
+        if entry >= 0 and len(edge) == 2:
+            found.append((*edge, entry // 2))
+            edge[entry % 2] = entry // 2
+        else:
+            edge = [*edge, entry // 2] if entry >= 0 else []
+    return np.array(found, int).reshape(-1, 3)
 
 
-def _strip(s: list[int]) -> Iterator[Triangle]:
-    """8.3"""
-    if len(s) >= 3:
-        p, q = s[0] // 2, s[1] // 2
-        for entry in s[2:]:
-            yield p, q, entry // 2
-            p, q = (p, entry // 2) if entry % 2 else (entry // 2, q)
+def normals(centres: Array, triangles: Array) -> Array:
+    """8.4: [N, 3], 0 where a texel has no triangle."""
+    a, b, c = centres[triangles].swapaxes(0, 1)
+    total = np.zeros_like(centres)
+    np.add.at(total, triangles.ravel(), np.repeat(np.cross(b - a, c - a), 3, axis=0))
+    return total / np.maximum(np.linalg.norm(total, axis=-1, keepdims=True), LEAST)

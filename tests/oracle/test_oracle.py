@@ -7,8 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from oracle import file, motion, sample, splats, surface, texture, turning
-from oracle import level as level_of_detail
+from oracle import descriptor, drawing, file, motion, quaternions, sample, splats, surface, texels, texture
 from shared_data import SharedData
 from silent import Silent
 from synthetic_avatar import sparse_avatar, synthetic_avatar, synthetic_clip, with_one_sided, with_texels
@@ -22,7 +21,7 @@ from mua.asset.write import write
 from mua.avatar.camera import orbit
 from mua.avatar.coarser import coarsest
 from mua.avatar.decode import decode_clip_frame
-from mua.avatar.rendering import frame_bounds, visible
+from mua.avatar.rendering import frame_bounds, render_over, visible
 from mua.baking.pipeline import bake
 from mua.baking.settings import BakeSettings
 from mua.kernels.splat_draw import splat_colors
@@ -33,17 +32,19 @@ from mua.pose.resample import resample
 from mua.pose.skeleton import Skeleton
 from mua.rig.bounds import playback_bounds
 from mua.student.settings import preset
+from mua.texture.surfels import vertex_normals
 
 POSITION, COLOUR = 1e-6, 1e-5  # metres; of 1: stored f32 numbers are rounded by 6e-8 of themselves
 STORAGES: tuple[Storage, ...] = ("f32", "f16", "i8", "packed")
-MODULES = (file, turning, motion, texture, splats, surface, level_of_detail, sample)
+MODULES = (file, quaternions, motion, descriptor, texture, texels, splats, drawing, surface, sample)
 SOURCES = [Path(str(module.__file__)).read_text() for module in MODULES]
 PAGE = file.SCHEMA.with_name("README.md")
 INDEPENDENT = {
     "re",
-    "struct",
     "sys",
     "oracle",
+    "types",
+    "flatbuffers",
     "zlib",
     "collections.abc",
     "dataclasses",
@@ -72,15 +73,13 @@ def turned_avatar(*, remove_heading: bool, rate: float = 30.0, wavelet: str = "b
 
 def assert_decodes_alike(path: Path, *, frames: int, level: int = 0) -> None:
     """Some frames of the first clip by both decoders, and what a camera sees of each."""
-    avatar, tree = read(path).at_level(level), file.load(path)
-    for _ in range(level):
-        tree = level_of_detail.coarser(tree)
-    clip, poses = resample(avatar.clips[0], avatar.encoding.rate), motion.frames(tree, tree["clips"][0])
+    avatar, record = read(path).at_level(level), file.load(path)
+    clip, poses = resample(avatar.clips[0], avatar.encoding.rate), motion.poses(record, record.clips[0])
     assert len(poses) == len(clip)
     for index in np.linspace(0, len(clip) - 1, min(frames, len(clip))).astype(int):
         ours, theirs = (
             decode_clip_frame(avatar, clip, frame=index, dtype=np.float64),
-            splats.decode(tree, poses, index),
+            splats.decode(record, poses, index, level),
         )
         camera = orbit(frame_bounds(ours), screen=(64, 64), azimuth=0.3 * index)
         colours = splat_colors(ours.centres, ours.texel_dq, ours.sh, camera.position)
@@ -90,11 +89,12 @@ def assert_decodes_alike(path: Path, *, frames: int, level: int = 0) -> None:
         np.testing.assert_allclose(theirs.scales, ours.scales, rtol=COLOUR, atol=0)
         np.testing.assert_allclose(theirs.opacities, ours.opacities, rtol=0, atol=COLOUR)
         np.testing.assert_allclose(theirs.colours(camera.position), colours, rtol=0, atol=COLOUR)
-        hidden = splats.behind(tree, theirs, camera.view)
+        seen_by = drawing.Camera(camera.view, camera.projection, camera.near, camera.screen)
+        hidden = drawing.behind(theirs, seen_by)
         shown, (seen, keys, _) = visible(replace(ours, normals=None), camera)[0], visible(ours, camera)
         np.testing.assert_array_equal(seen, shown[~hidden[shown]])
         assert hidden[shown].any() == (avatar.rig.texels.one_sided is not None)
-        assert_same_keys(splats.keys(tree, theirs, camera.view, camera.near)[seen], keys)
+        assert_same_keys(drawing.keys(theirs, seen_by)[seen], keys)
 
 
 def assert_same_keys(found: Array, expected: Array) -> None:
@@ -145,15 +145,16 @@ def test_poses_outside_of_training_are_held_alike(tmp_path: Path, reach: float) 
     """Random turns of every joint, at 0 the bind pose; how far outside is the same number."""
     avatar, rng = turned_avatar(remove_heading=True, rate=24.0), np.random.default_rng(7)
     write(tmp_path / "a.muaavatar", avatar, storage="f32")
-    tree, bind = file.load(tmp_path / "a.muaavatar"), avatar.rig.skeleton.bind_rotations
+    record, bind = file.load(tmp_path / "a.muaavatar"), avatar.rig.skeleton.bind_rotations
     turns = rotation.from_axis_angle(rotation.normalize(rng.normal(size=(3, 3, 3))), reach * rng.normal(size=(3, 3)))
     window = [(turn, avatar.rig.skeleton.bind_translations) for turn in rotation.multiply(turns, bind)]
     rotations, translations = (np.stack(part) for part in zip(*window, strict=True))
     described = describe_window(avatar.rig.skeleton, avatar.encoding, rotations, translations)
     x, outside = read_components(avatar.components, described)
-    z = motion.components(tree, motion.descriptor(tree, window))
-    np.testing.assert_allclose(motion.bounded(tree, z), x, rtol=0, atol=POSITION)
-    assert motion.outside(z, motion.bounded(tree, z)) == pytest.approx(float(outside), abs=POSITION)
+    d = descriptor.describe(record, [motion.Pose(*pose) for pose in reversed(window)], len(window) - 1)
+    z = descriptor.components(record.encoding, d)
+    np.testing.assert_allclose(descriptor.bound(record.encoding, z), x, rtol=0, atol=POSITION)
+    assert descriptor.outside(z, descriptor.bound(record.encoding, z)) == pytest.approx(float(outside), abs=POSITION)
     low, high = avatar.components.ranges
     assert ((x >= low - avatar.components.margins) & (x <= high + avatar.components.margins)).all()
 
@@ -165,15 +166,20 @@ def test_surfaces_hold_the_same_triangles(tmp_path: Path, seed: int) -> None:
     write(tmp_path / "a.muaavatar", avatar)
     found = surface.triangles(file.load(tmp_path / "a.muaavatar"))
     np.testing.assert_array_equal(found, avatar.surface.triangles(avatar.rig.texels))
+    places = np.random.default_rng(seed).normal(size=(len(avatar.rig.texels.texels), 3))
+    normals = vertex_normals(places, found)
+    known = (normals != [0, 1, 0]).any(axis=1)  # elsewhere there is no triangle, or they cancel
+    np.testing.assert_allclose(surface.normals(places, found)[known], normals[known], rtol=0, atol=POSITION)
+    assert known.mean() > 0.5
 
 
 @pytest.mark.parametrize("storage", ["f16", "packed"])
 def test_the_same_texels_are_one_sided(tmp_path: Path, storage: Storage) -> None:
     path = tmp_path / "a.muaavatar"
     write(path, sparse_avatar(5), storage=storage)
-    np.testing.assert_array_equal(texture.one_sided(file.load(path)["texels"]), read(path).rig.texels.one_sided)
+    np.testing.assert_array_equal(texels.one_sided(file.load(path).texels), read(path).rig.texels.one_sided)
     write(path, synthetic_avatar(), storage=storage)
-    assert not texture.one_sided(file.load(path)["texels"]).any()
+    assert not texels.one_sided(file.load(path).texels).any()
 
 
 @pytest.mark.parametrize("level", [1, 2])
@@ -186,8 +192,31 @@ def test_coarser_levels_decode_alike(tmp_path: Path, wavelet: str, level: int) -
     ]
     avatar = with_one_sided(turned_avatar(remove_heading=True, wavelet=wavelet), one_sided)
     write(path, with_texels(avatar, some), storage="f16")
-    assert len(file.load(path)["texels"]["levels"]) == coarsest(read(path)) == 2
+    assert len(file.load(path).texels.levels) == coarsest(read(path)) == 2
     assert_decodes_alike(path, frames=2, level=level)
+
+
+@pytest.mark.parametrize("shift", [[0.0, 0.0], [0.1, -0.05]])
+@pytest.mark.parametrize("azimuth", [0.3, 2.0])
+def test_images_are_those_of_the_page(azimuth: float, shift: list[float]) -> None:
+    """Of the sample, whose texels are one-sided in part; some splats are beyond the image's edge."""
+    avatar, record = read(sample.SAMPLE), file.load(sample.SAMPLE)
+    theirs = splats.decode(record, motion.poses(record, record.clips[0]), sample.FRAME)
+    clip = resample(avatar.clips[0], avatar.encoding.rate)
+    ours = decode_clip_frame(avatar, clip, frame=sample.FRAME, dtype=np.float64)
+    camera = orbit(frame_bounds(ours), screen=(48, 32), azimuth=azimuth, fov=1.2)
+    camera.view[2, 3] *= 0.5
+    camera.projection[:2, 2] = shift
+    expected = render_over(ours, camera, background=(0.2, 0.4, 0.6))
+    seen_by = drawing.Camera(camera.view, camera.projection, camera.near, camera.screen)
+    found = drawing.draw(theirs, seen_by, np.full((32, 48, 3), [0.2, 0.4, 0.6]))
+    np.testing.assert_allclose(found, expected, rtol=0, atol=COLOUR)
+    assert np.abs(expected - [0.2, 0.4, 0.6]).max() > 0.1
+
+
+def test_a_texel_is_as_long_as_the_mean_mesh_says() -> None:
+    record = file.load(sample.SAMPLE)
+    assert texels.texel_length(record) == pytest.approx(record.texels.length, rel=1e-6)
 
 
 def test_the_sample_beside_the_page_is_what_its_formulas_give() -> None:
@@ -210,7 +239,7 @@ def test_every_step_of_the_decoder_is_on_the_page() -> None:
     numbers = set(re.findall(r"^\*\*(\d\.\d)", PAGE.read_text(), re.MULTILINE))
     quoted = set(re.findall(r"(?<![\d.])([1-9]\.[1-9])(?![\de])", "".join(SOURCES)))
     assert quoted <= numbers
-    players = {"1.4", "7.1", "8.4", "9.5"}  # what is drawn of it, and how
+    players = {"1.4"}  # where a texel's centre is
     reading = {number for number in numbers if number.startswith("1") and len(number) > 3}
     assert numbers - quoted - reading <= players
 
