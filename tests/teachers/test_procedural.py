@@ -82,7 +82,7 @@ def test_faces_are_wound_alike_and_no_edge_has_three(figure: Character) -> None:
 def test_every_part_encloses_a_positive_volume(figure: Character) -> None:
     faces = figure.mesh.faces
     label = _components(faces, len(figure.mesh.vertices))[faces[:, 0]]
-    assert len(np.unique(label)) == 6  # the dressed body with its head, hair, two legs, two thumbs
+    assert len(np.unique(label)) == 14  # the dressed body with its head, hair, two legs, ten fingers
     for part in np.unique(label):
         closed, places = _capped(faces[label == part], figure.mesh.vertices)
         a, b, c = places[closed].swapaxes(0, 1)

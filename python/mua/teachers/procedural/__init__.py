@@ -4,8 +4,8 @@ import numpy as np
 
 from mua.limits import MAX_INFLUENCES
 from mua.rig.character import Character
-from mua.teachers.procedural.figure import build_arm, build_leg, build_thumb, build_trunk, other_side
-from mua.teachers.procedural.grid import weld
+from mua.teachers.procedural.figure import build_arm, build_fingers, build_leg, build_trunk, other_side
+from mua.teachers.procedural.grid import below, weld
 from mua.teachers.procedural.head import build_hair, build_head
 from mua.teachers.procedural.joints import build_skeleton
 from mua.teachers.procedural.motions import build_clips
@@ -24,7 +24,7 @@ def procedural_character(*, seed: int = 0) -> Character:
     rng = np.random.default_rng(seed)
     skeleton = build_skeleton()
     trunk = build_trunk()
-    arm, thumb, leg = build_arm(trunk.points), build_thumb(), build_leg()
+    arm, fingers, leg = build_arm(trunk.points), build_fingers(), build_leg()
     parts = (
         build_skirt(trunk.points, rng.uniform(-np.pi, np.pi, size=2)),
         trunk,
@@ -32,8 +32,8 @@ def procedural_character(*, seed: int = 0) -> Character:
         build_hair(),
         arm,
         other_side(arm, cell=(0.52, 0.64, 0.68, 1.0)),
-        thumb,
-        other_side(thumb, cell=(0.84, 0.93, 1.0, 1.0)),
+        *fingers,
+        *(other_side(finger, cell=below(finger.cell)) for finger in fingers),
         leg,
         other_side(leg, cell=(0.18, 0.64, 0.36, 1.0)),
     )

@@ -4,9 +4,8 @@ import numpy as np
 
 from mua.arrays import Array
 from mua.teachers.procedural.brush import Surface, color, filled, inside, over
-from mua.teachers.procedural.complexion import SKIN, paint_hand
-from mua.teachers.procedural.figure import SLEEVE_EDGE, along_arm, neckline
-from mua.teachers.procedural.joints import PLACES
+from mua.teachers.procedural.complexion import SKIN
+from mua.teachers.procedural.figure import SLEEVE_EDGE, neckline
 
 IVORY, TEAL, CORAL, MUSTARD, LEAF = color("f3e6cf"), color("17505e"), color("d9573f"), color("e2a63a"), color("4f8a7b")
 _APEX = 0.197  # metres from the cone's apex to the waist: waist girth / pi, for a half circle of cloth
@@ -57,6 +56,4 @@ def paint_sleeve(surface: Surface) -> Array:
     """The top's sleeve with its cuff, then the bare forearm and hand."""
     cloth = filled(surface.around, TEAL)
     cloth = over(cloth, MUSTARD, inside(np.abs(surface.ring - SLEEVE_EDGE) - 1, edge=0.05))
-    across = surface.points[..., 2] - PLACES["LeftArm"][2]
-    skin = paint_hand(filled(surface.around, SKIN), along_arm(surface.points), across)
-    return over(cloth, skin, inside(SLEEVE_EDGE + 0.7 - surface.ring, edge=0.05))
+    return over(cloth, SKIN, inside(SLEEVE_EDGE + 0.7 - surface.ring, edge=0.05))

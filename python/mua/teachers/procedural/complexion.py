@@ -10,7 +10,7 @@ from mua.teachers.procedural.head import EYE, MOUTH, NOSE_TIP
 SKIN, BLUSH, LIPS = color("e8bb9d"), color("dd8f78"), color("b9504a")
 WHITE, IRIS, LASH, BROW = color("f6f1ea"), color("4d6b52"), color("2a1a15"), color("4a2c20")
 HAIR, HAIR_LIGHT = color("3b2018"), color("6b3d27")
-SHOE = color("c8452f")
+SHOE, NAIL = color("c8452f"), color("f3cfc0")
 
 
 def _ellipse(x: Array, y: Array, wide: float, high: float) -> Array:
@@ -37,7 +37,8 @@ def paint_head(surface: Surface) -> Array:
     """Neck and face, the features painted from the front."""
     x, y, z = np.moveaxis(surface.points, -1, 0)
     front = z > 0.02
-    face = filled(x, SKIN)
+    scalp = smoothstep(0.04, 0.01, z) * smoothstep(1.5, 1.53, y) + smoothstep(1.672, 1.69, y)
+    face = over(filled(x, SKIN), HAIR, np.minimum(scalp, 1))
     for side in (-1, 1):
         cheek = np.exp(-(((side * x - 0.043) / 0.016) ** 2) - ((y - 1.552) / 0.013) ** 2)
         face = over(face, BLUSH, 0.45 * cheek * front)
@@ -60,18 +61,12 @@ def paint_hair(surface: Surface) -> Array:
     return over(filled(surface.around, HAIR), HAIR_LIGHT, 0.6 * strand)
 
 
-def paint_hand(skin: Array, along: Array, z: Array) -> Array:
-    """Lines between the fingers of a closed hand and a little blush on its tip, `along` metres from the shoulder."""
-    spread = np.interp(along, [0.59, 0.66, 0.68], [1.0, 0.8, 0.4])
-    for line in (-0.019, 0.0, 0.019):
-        gap = np.maximum(np.abs(z - line * spread) - 0.0008, 0.6 - along)
-        skin = over(skin, BLUSH, 0.8 * inside(gap, edge=0.0015))
-    return over(skin, BLUSH, 0.35 * smoothstep(0.62, 0.68, along))
-
-
-def paint_thumb(surface: Surface) -> Array:
-    """Plain skin."""
-    return filled(surface.around, SKIN)
+def paint_finger(surface: Surface) -> Array:
+    """Skin with a blush at the tip and a pale nail on its back."""
+    end = surface.along.max()
+    skin = over(filled(surface.around, SKIN), BLUSH, 0.35 * smoothstep(0.55 * end, end, surface.along))
+    nail = _ellipse((np.abs(surface.around - 0.5) - 0.25) * 0.05, surface.along - 0.85 * end, 0.005, 0.007)
+    return over(skin, NAIL, 0.8 * inside(nail) * (surface.around > 0.5))
 
 
 def paint_leg(surface: Surface) -> Array:

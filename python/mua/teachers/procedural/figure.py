@@ -11,7 +11,7 @@ from mua.teachers.procedural.joints import ARM_DIRECTION, FOREARM, INDEX, NAMES,
 COLUMNS = 48  # of trunk and head
 ARM_COLUMNS = 20  # the perimeter of an armhole in quads
 LEG_COLUMNS = 18
-_THUMB_COLUMNS = 8
+_FINGER_COLUMNS = 6
 SLEEVE_END = 0.365  # metres along the arm
 
 _ARMHOLE_ROWS = slice(4, 8)
@@ -58,17 +58,25 @@ _HAND = np.array(
         [0.500, 0.0165, 0.023],
         [0.530, 0.0165, 0.031],
         [0.560, 0.0155, 0.037],
-        [0.590, 0.0135, 0.038],
-        [0.630, 0.011, 0.034],
-        [0.655, 0.009, 0.027],
-        [0.672, 0.006, 0.017],
-        [0.680, 0.0, 0.0],
+        [0.590, 0.0125, 0.037],
+        [0.604, 0.010, 0.034],
+        [0.610, 0.0, 0.0],
     ]
 )
-_CURL = 1.4  # per metre: how the fingers bend toward the palm
+# name, metres along the arm and ahead of its axis of the root, length, radius (metres), direction: along, palm, ahead
+_FINGERS = (
+    ("thumb", 0.522, 0.018, 0.063, 0.0125, (0.77, 0.15, 0.55)),
+    ("index finger", 0.592, 0.0275, 0.074, 0.0092, (1.0, 0.0, 0.07)),
+    ("middle finger", 0.594, 0.0092, 0.082, 0.0094, (1.0, 0.0, 0.01)),
+    ("ring finger", 0.592, -0.0092, 0.076, 0.0090, (1.0, 0.02, -0.05)),
+    ("little finger", 0.586, -0.0265, 0.062, 0.0082, (1.0, 0.05, -0.12)),
+)
+# share of a finger's length, and of its radius
+_FINGER_RINGS = np.array([[0, 1.05], [0.4, 1.0], [0.75, 0.84], [0.93, 0.6], [1, 0]])
+_CURL = 2.2  # per metre: how the fingers bend toward the palm
 _SLEEVE_RINGS = np.array([0.045, 0.07, 0.1, 0.135, 0.17, 0.205, 0.24, 0.265, 0.29, 0.325, 0.36, 0.365])
 SLEEVE_EDGE = len(_SLEEVE_RINGS)  # the ring of the arm where cloth ends
-_HAND_RINGS = np.array([0.35, 0.38, 0.42, 0.46, 0.49, 0.515, 0.54, 0.565, 0.59, 0.615, 0.64, 0.66, 0.673, 0.68])
+_HAND_RINGS = np.array([0.35, 0.38, 0.42, 0.46, 0.49, 0.515, 0.54, 0.565, 0.585, 0.598, 0.606, 0.61])
 
 # ring, centre x, y, z, tilt (degrees, 90: the ring stands and faces forward), half width, reach to front and back
 _LEG = np.array(
@@ -178,8 +186,6 @@ def _arm_points(trunk: Array) -> Array:
     rounded = smoothstep(0.16, 0.03, _SLEEVE_RINGS)[:, None] * np.where(theta > 0, 0.009, 0.012) * np.sin(theta)
     sleeve += rounded[..., None] * np.abs([ARM_DIRECTION[1], ARM_DIRECTION[0], 0.0])
     hand = _arm_ring(_HAND_RINGS[:, None], spline(_HAND, _HAND_RINGS))
-    curl = _CURL * np.maximum(_HAND_RINGS - 0.56, 0) ** 2
-    hand += curl[:, None, None] * np.array([ARM_DIRECTION[1], -ARM_DIRECTION[0], 0.0])
     points = np.concatenate([_armhole(trunk)[None], sleeve, hand])
     for _ in range(3):  # ease the first rings into the shoulder
         inner = slice(1, 5)
@@ -208,21 +214,29 @@ def build_arm(trunk: Array) -> Part:
     return Part("left arm", points, (0.36, 0.64, 0.52, 1.0), rows_by_length(points), loose, arm_weights(along))
 
 
-def build_thumb() -> Part:
-    """The left thumb, rooted in the palm and pointing forward along the hand."""
-    root = PLACES["LeftArm"] + 0.522 * ARM_DIRECTION + np.array([0, 0, 0.018])
-    pointing = 0.8 * ARM_DIRECTION + np.array([-0.12, -0.1, 0.55])
-    pointing /= np.linalg.norm(pointing)
-    across = np.cross(pointing, np.array([0.0, 0, 1]))
+def build_fingers() -> tuple[Part, ...]:
+    """The fingers of the left hand, thumb first: tubes rooted in the palm and bent toward it."""
+    palm = np.array([ARM_DIRECTION[1], -ARM_DIRECTION[0], 0.0])
+    parts = []
+    for place, (name, along, depth, length, radius, pointing) in enumerate(_FINGERS):
+        root = PLACES["LeftArm"] + along * ARM_DIRECTION + np.array([0, 0, depth])
+        ahead = pointing[0] * ARM_DIRECTION + pointing[1] * palm + np.array([0, 0, pointing[2]])
+        points = _finger(root, ahead / np.linalg.norm(ahead), palm, length=length, radius=radius)
+        weights = chain_weights(np.zeros(points.shape[:2]), (("LeftHand", 0.0, 0.0),))
+        cell = (0.68 + 0.064 * place, 0.88, 0.744 + 0.064 * place, 0.94)
+        parts.append(Part(f"left {name}", points, cell, rows_by_length(points), np.zeros(points.shape[:2]), weights))
+    return tuple(parts)
+
+
+def _finger(root: Array, ahead: Array, palm: Array, *, length: float, radius: float) -> Array:
+    """A tube [R, C + 1, 3] from `root` with a round tip, bent toward `palm`."""
+    across = np.cross(ahead, [0.0, 0, 1])
     across /= np.linalg.norm(across)
-    reach = np.array([0.0, 0.02, 0.04, 0.052, 0.06, 0.063])
-    radius = np.array([0.0125, 0.0115, 0.0095, 0.0085, 0.0055, 0.0])[:, None]
-    theta = angles(_THUMB_COLUMNS)
-    ring = np.sin(theta)[:, None] * -across + np.cos(theta)[:, None] * np.cross(-across, -pointing)
-    points = close(root + reach[:, None, None] * pointing + radius[..., None] * ring)
-    weights = chain_weights(np.zeros(points.shape[:2]), (("LeftHand", 0.0, 0.0),))
-    loose = np.zeros(points.shape[:2])
-    return Part("left thumb", points, (0.68, 0.93, 0.84, 1.0), rows_by_length(points), loose, weights)
+    theta = angles(_FINGER_COLUMNS)
+    ring = np.sin(theta)[:, None] * -across + np.cos(theta)[:, None] * np.cross(across, ahead)
+    reach, wide = length * _FINGER_RINGS[:, 0], radius * _FINGER_RINGS[:, 1]
+    middle = root + reach[:, None] * ahead + (_CURL * reach**2)[:, None] * palm
+    return close(middle[:, None] + wide[:, None, None] * ring)
 
 
 def build_leg() -> Part:

@@ -33,6 +33,12 @@ class Part:
         return u0 + GUTTER, v0 + GUTTER, u1 - GUTTER, v1 - GUTTER
 
 
+def below(cell: tuple[float, float, float, float]) -> tuple[float, float, float, float]:
+    """The cell of equal size under another one in the atlas."""
+    u0, v0, u1, v1 = cell
+    return u0, v1, u1, 2 * v1 - v0
+
+
 def spline(keys: Array, at: Array) -> Array:
     """Interpolate rows of `keys` [K, 1 + n] (position first, ascending) at positions [...], without overshoot."""
     return np.asarray(PchipInterpolator(keys[:, 0], keys[:, 1:])(at))

@@ -11,7 +11,7 @@ HAIR_COLUMNS = 40
 EYE = np.array([0.031, 1.587])  # x, y
 NOSE_TIP, MOUTH = 1.553, 1.526  # y
 
-_FRONT_DENSITY = 0.5  # columns gather at the face and spread evenly again down the neck
+_FRONT_DENSITY = 0.62  # columns gather at the face and spread evenly again down the neck
 
 # ring, half width, front z, back z, y at the sides, at the front, at the back
 _HEAD = np.array(
@@ -32,6 +32,8 @@ _HEAD = np.array(
         [26, 0.043, 0.030, -0.058, 1.447, 1.424, 1.460],
     ]
 )
+# ring, how much finer the texels below it are: eyes, brows and mouth are looked at most
+_FACE_DENSITY = ((2, 1.0), (4, 1.8), (6, 3.0), (11, 3.0), (13, 1.8), (15, 2.4), (18, 2.4), (21, 1.2), (23, 0.8))
 _CROWN, _ENDS = 1.712, 1.488  # y of the hair
 # fraction of the way from crown to ends, half width, front z, back z, y
 _HAIR = np.array(
@@ -48,6 +50,7 @@ _HAIR = np.array(
 )
 _HAIRLINE = 0.27  # the same fraction, above the forehead
 _PARTING = -0.3  # its angle
+_STRANDS = 0.022  # metres by which the longest strands hang below the shortest
 
 
 def _features(points: Array) -> Array:
@@ -69,12 +72,12 @@ def build_head(trunk: Array) -> Part:
     phi, below_chin = angles(COLUMNS), smoothstep(20, 27, np.arange(len(keys)))[:, None]
     points = close(_features(trunk_ring(keys, phi - _FRONT_DENSITY * (1 - below_chin) * np.sin(phi))))
     points = np.concatenate([points, trunk[:1]])
-    face = np.where(np.isin(np.arange(len(points) - 1), range(3, 22)), 1.5, 1.0)
+    density = np.interp(np.arange(len(points) - 1), *np.transpose(_FACE_DENSITY))
     return Part(
         "head",
         points,
         cell=(0.5, 0.34, 1.0, 0.64),
-        rows=rows_by_length(points, face),
+        rows=rows_by_length(points, density),
         looseness=np.zeros(points.shape[:2]),
         weights=trunk_weights(points),
     )
@@ -83,7 +86,8 @@ def build_head(trunk: Array) -> Part:
 def build_hair() -> Part:
     """A chin-length bob, parted on the right and swept to the left; its last ring turns in toward the head."""
     theta = angles(HAIR_COLUMNS)
-    drawn = np.where(theta < 0, smoothstep(-0.62, -1.12, theta), smoothstep(0.38, 1.18, theta))
+    theta = theta - 0.3 * np.sin(theta)  # more columns in front, where lengths differ
+    drawn = np.where(theta < 0, smoothstep(-0.45, -1.3, theta), smoothstep(0.36, 1.3, theta))
     hairline = _HAIRLINE + 0.05 * np.clip((theta - _PARTING) / 0.8, -1, 1) ** 2
     length = hairline + (1 - hairline) * drawn
     down = np.linspace(0, 1, 13)[:, None] * length
@@ -92,10 +96,11 @@ def build_hair() -> Part:
     close_to_face = 1 - 0.07 * smoothstep(0.7, 1.0, down / length) * (1 - drawn)
     depth = np.where(cosine > 0, front, -back) * cosine
     height = height - 0.018 * cosine * down**2  # longer toward the chin
+    height = height - _STRANDS * (0.5 + 0.25 * np.sin(17 * theta + 1) + 0.25 * np.sin(11 * theta)) * down**6
     outer = np.stack([width * sine * close_to_face, height, depth * close_to_face], axis=-1)
     inward = outer[-1] * np.array([0.72, 1, 0.72]) + np.array([0, 0.012, 0])
     points = close(np.concatenate([outer, inward[None]]))
     weights = np.zeros((*points.shape[:2], len(NAMES)))
     weights[..., INDEX["Head"]] = 1
     loose = 0.5 * smoothstep(1.6, _ENDS, points[..., 1])
-    return Part("hair", points, (0.68, 0.64, 1.0, 0.93), rows_by_length(points), loose, weights)
+    return Part("hair", points, (0.68, 0.64, 1.0, 0.88), rows_by_length(points), loose, weights)

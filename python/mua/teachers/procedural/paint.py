@@ -7,7 +7,7 @@ import numpy as np
 from mua.arrays import Array
 from mua.teachers.procedural.brush import Surface
 from mua.teachers.procedural.cloth import paint_bodice, paint_skirt, paint_sleeve
-from mua.teachers.procedural.complexion import paint_hair, paint_head, paint_leg, paint_thumb
+from mua.teachers.procedural.complexion import paint_finger, paint_hair, paint_head, paint_leg
 from mua.teachers.procedural.grid import Part
 
 ATLAS = 1024  # texels a side
@@ -38,8 +38,6 @@ _BRUSHES: dict[str, Callable[[Surface], Array]] = {
     "hair": paint_hair,
     "left arm": paint_sleeve,
     "right arm": paint_sleeve,
-    "left thumb": paint_thumb,
-    "right thumb": paint_thumb,
     "left leg": paint_leg,
     "right leg": paint_leg,
 }
@@ -54,7 +52,7 @@ def paint(parts: tuple[Part, ...]) -> Array:
         u0, v0, u1, v1 = part.cell
         rows = np.flatnonzero((centers >= v0) & (centers < v1))
         columns = np.flatnonzero((centers >= u0) & (centers < u1))
-        brush = _BRUSHES[part.name]
+        brush = _BRUSHES.get(part.name, paint_finger)
         atlas[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1, :3] = brush(
             _surface(part, centers[rows], centers[columns])
         )
