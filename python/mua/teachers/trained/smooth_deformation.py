@@ -90,4 +90,4 @@ class SmoothDeformation(nn.Module):
         """Buffers are as large as those that are loaded, whose frames and components only the state knows."""
         for name in FITTED:
             setattr(self, name, torch.empty_like(state_dict[prefix + name], device=self.units.device))
-        super()._load_from_state_dict(state_dict, prefix, *rest)  # type: ignore[arg-type]
+        super()._load_from_state_dict(state_dict, prefix, *rest)
