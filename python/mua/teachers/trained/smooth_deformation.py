@@ -1,8 +1,8 @@
 """The deformation in poses that are far from all training frames: kernel ridge regression on the pose.
 
-Networks fit the training frames closely and little between them. A regression that smooths over frames errs less in
-other motion, towards their mean where it knows nothing (docs/research/captures.md). Each body part has one of its own,
-which sees what lies some joints away less.
+Networks fit the training frames closely, and other motion less. A regression that smooths over frames ends in their
+mean where it knows nothing (docs/research/template.md). Each body part has one of its own, which sees what lies some
+joints away less.
 """
 
 import torch
@@ -17,7 +17,7 @@ from mua.training.smoother import Smoother, fit_smoother
 
 # Chosen on training clips, each left out in turn.
 NOISE = 0.3  # variance of a frame's deformation beside what follows from its pose, relative to the latter
-FRAMES = 1024  # that it is fitted to; so smooth a function gains nothing from more
+FRAMES = 1024  # that it is fitted to, all along the clips: its cost grows with them
 RANK = 128  # principal components of the deformation
 FITTED = ("poses", "widths", "values", "mean", "basis", "near")  # buffers of a regression
 
