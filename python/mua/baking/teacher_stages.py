@@ -15,6 +15,7 @@ from mua.teachers.trained.from_capture import Filmed, Outlines, material_of, pre
 from mua.teachers.trained.image_losses import ImageLoss, Material, Perceptual
 from mua.teachers.trained.measured import measured_surfaces
 from mua.teachers.trained.model import TeacherModel
+from mua.teachers.trained.motion_deformation import REGRESSION
 from mua.teachers.trained.preview import Preview
 from mua.teachers.trained.settings import TeacherSettings
 from mua.teachers.trained.splat_training import STAGES, TEXTURE, train_teacher
@@ -56,7 +57,7 @@ def carry_out(
     image_loss = ImageLoss(teacher, material, settings, refinement=refinement_of(filmed, settings)).to(device)
     checkpoints = Checkpoints(output / "work", _key(filmed, settings, weights, material), processes)
     if processes.first:
-        checkpoints.remove_leftovers((*TEMPLATE_STAGES, *STAGES))
+        checkpoints.remove_leftovers((*TEMPLATE_STAGES, REGRESSION, *STAGES))
     preview = preview_of(filmed, output / "progress") if processes.first else None
     report = _Reporter(image_loss, preview, listener)
     run = Run(torch.Generator().manual_seed(settings.seed), checkpoints, report, device, processes)

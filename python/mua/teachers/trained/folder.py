@@ -20,7 +20,7 @@ from mua.teachers.trained.settings import LossWeights, TeacherSettings
 from mua.training.schedule import Schedule
 
 FILE, RIG, WEIGHTS = "teacher.json", "rig.npz", "weights.pt"
-FORMAT, VERSION = "mua-teacher", 3
+FORMAT, VERSION = "mua-teacher", 4
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,7 @@
-"""How motion deforms the template in the bind pose: f_eg(F_eg(descriptor)) + F_delta(descriptor), both trained."""
+"""How motion deforms the template in the bind pose: f_eg(F_eg(descriptor)) + F_delta(descriptor), both trained.
+
+Far from the training frames a regression through what the networks give there takes their place.
+"""
 
 from dataclasses import dataclass
 
@@ -12,9 +15,13 @@ from mua.rig.rig import Rig
 from mua.teachers.trained.deformation import EmbeddedDeformation
 from mua.teachers.trained.graph import build_graph
 from mua.teachers.trained.graph_networks import NodeFeatures, OwnReadout
+from mua.teachers.trained.smooth_deformation import FRAMES, SmoothDeformation
+from mua.training.optimise import Run
 
 FARTHEST = 3.0  # standard deviations; a pose beyond all that was seen deforms like one at the border
 TURN = 0.1  # radians that an output of 1 turns a node
+REGRESSION = "template regression"  # stage of a run
+AT_ONCE = 64  # frames
 MOVE = 0.01  # metres on a person that an output of 1 moves a node or a vertex
 
 
@@ -53,6 +60,7 @@ class MotionDeformation(nn.Module):
         self.node_motion = OwnReadout(count, features, 6)
         self.vertex_features = NodeFeatures(rig, encoding, graph, features=features, fade=sizes.fade)
         self.vertex_offsets = OwnReadout(len(rig.mesh.vertices), features, 3)
+        self.smooth = SmoothDeformation(rig, encoding, self.node_features.parts.reach)
         self.register_buffer("mean", torch.zeros(encoding.width))
         self.register_buffer("scale", torch.ones(encoding.width))
 
@@ -61,7 +69,8 @@ class MotionDeformation(nn.Module):
         descriptors: Tensor,  # [B, D]
     ) -> Tensor:
         """Canonical vertices [B, V, 3], metres."""
-        return self.deform(descriptors).vertices
+        vertices = self.deform(descriptors).vertices
+        return self.smooth(descriptors.to(vertices), vertices) if self.smooth.fitted else vertices
 
     def deform(
         self,
@@ -69,7 +78,7 @@ class MotionDeformation(nn.Module):
         *,
         offsets: bool = True,  # False: F_eg alone
     ) -> Deformed:
-        """Canonical vertices with the turns, moves and offsets that they come from."""
+        """The networks' canonical vertices with the turns, moves and offsets that they come from."""
         inputs = ((descriptors.to(self.mean) - self.mean) / self.scale).clamp(-FARTHEST, FARTHEST)
         motion = self.node_motion(self.node_features(inputs))
         turns, moves = TURN * motion[..., :3], MOVE * self._size * motion[..., 3:]
@@ -93,3 +102,20 @@ class MotionDeformation(nn.Module):
         self.scale.copy_(torch.as_tensor(found.scale))
         self.node_features.seed(generator)
         self.vertex_features.seed(generator)
+
+    @torch.no_grad()
+    def carry_over(
+        self,
+        descriptors: Tensor,  # [F, D] of the training frames
+        *,
+        run: Run,
+    ) -> None:
+        """Fit the regression to what the networks give in training frames."""
+        rows = torch.linspace(0, len(descriptors) - 1, min(len(descriptors), FRAMES)).round().long()
+        known = descriptors[rows].to(self.mean)
+
+        def solve() -> dict[str, Tensor]:
+            return self.smooth.regress(known, torch.cat([self.deform(some).vertices for some in known.split(AT_ONCE)]))
+
+        for name, tensor in run.once(REGRESSION, solve).items():
+            setattr(self.smooth, name, tensor)

@@ -1,4 +1,5 @@
-"""The training of the drivable template: first the nodes' motion, then the vertices' offsets beside it.
+"""The training of the drivable template: first the nodes' motion, then the vertices' offsets beside it, then a
+regression for other motion.
 
 The loss compares with what was observed of each frame: a surface, outlines, tracked points, or several of these. A
 killed run resumes from its last checkpoint and ends in the same bytes.
@@ -132,6 +133,7 @@ def fit_template(
                 loss = partial(_mean_loss, frames=len(observations.descriptors), schedule=schedule, run=own)
                 template_loss.offsets = stage == STAGES[-1]
                 optimise(template_loss, loss, schedule=schedule, parameters=groups, stage=stage, run=own)
+        deformation.carry_over(observations.descriptors, run=run)
     return template.requires_grad_(False).eval()
 
 

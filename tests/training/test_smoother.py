@@ -7,8 +7,8 @@ import pytest
 import torch
 from scipy.spatial.distance import cdist
 
-from mua.student import smoother
-from mua.student.smoother import LEAST, RIDGE, WIDTH, fit_beyond, fit_smoother
+from mua.training import smoother
+from mua.training.smoother import LEAST, RIDGE, WIDTH, fit_beyond, fit_smoother
 
 
 def frames(count: int, dimensions: int = 4) -> tuple[torch.Tensor, torch.Tensor]:
