@@ -8,6 +8,7 @@ from typing import Any
 
 from mua.atlas.detail import read_detail
 from mua.baking.settings import BakeSettings
+from mua.characters.facing import Facing
 from mua.characters.figure_size import FigureSize
 from mua.errors import InputError
 from mua.files.inputs import is_capture, require_file, require_motion, require_teacher
@@ -31,6 +32,7 @@ def bake_settings(options: Mapping[str, Any]) -> BakeSettings:
         motions=options["motion"],
         mapping=_joints(options["mapping"]),
         detail=read_detail(_as_texts(options["detail"]), uv=options["uv"]),
+        facing=Facing(options["facing"], options["turn"]),
         size=FigureSize(scale=options["scale"], height=options["height"]),
         jobs=cores() if options["jobs"] is None else options["jobs"],
     )
@@ -59,8 +61,8 @@ def _check_motion_options(settings: BakeSettings) -> None:
 
 def _with_trained_teacher(settings: BakeSettings, options: Mapping[str, Any]) -> BakeSettings:
     """The settings of a bake whose teacher is, or is going to be, trained on images."""
-    for name in ("uv", "detail", "scale", "height", "leave_out"):
-        if options[name] not in (None, (), {}, "auto"):
+    for name in ("uv", "detail", "scale", "height", "facing", "turn", "leave_out"):
+        if options[name] not in (None, (), {}, "auto", 0.0):
             raise InputError(
                 f"--{name.replace('_', '-')}: the capture's own capture.json says it; leave the option out"
             )

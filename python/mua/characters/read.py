@@ -7,6 +7,7 @@ from mua.atlas.detail import Detail, UvMode
 from mua.atlas.surfaces import Surfaces
 from mua.atlas.uv import build_atlas
 from mua.characters.animation import Animation
+from mua.characters.facing import AS_SHOWN, Facing
 from mua.characters.fbx.read import read_fbx, read_fbx_animation
 from mua.characters.figure_size import AS_FOUND, FigureSize
 from mua.characters.gltf.read import read_gltf, read_gltf_animation
@@ -23,21 +24,23 @@ USD = (".usd", ".usda", ".usdc", ".usdz")
 SKELETOOL, SKELETOOL_MOTION = ".character", ".motion"  # of DDC, ASH, TriHuman and UMA
 
 
-def read_surfaces(path: Path, *, size: FigureSize = AS_FOUND, leave_out: Sequence[str] = ()) -> Surfaces:
+def read_surfaces(
+    path: Path, *, size: FigureSize = AS_FOUND, leave_out: Sequence[str] = (), facing: Facing = AS_SHOWN
+) -> Surfaces:
     """Read a rigged character by its suffix, less the meshes, nodes or materials that `leave_out` names.
 
     Raises an InputError where the suffix is unknown, the file is missing or nothing has such a name.
     """
     suffix = _checked_suffix(path, (*GLTF, FBX, *USD, SKELETOOL))
     if suffix in GLTF:
-        return resized(read_gltf(path, leave_out=leave_out), size, path)
+        return resized(read_gltf(path, leave_out=leave_out, facing=facing), size, path)
     if suffix == FBX:
-        return resized(read_fbx(path, leave_out=leave_out), size, path)
+        return resized(read_fbx(path, leave_out=leave_out, facing=facing), size, path)
     if suffix == SKELETOOL:
-        return resized(read_skeletool(path, leave_out=leave_out), size, path)
+        return resized(read_skeletool(path, leave_out=leave_out, facing=facing), size, path)
     from mua.characters.usd.read import read_usd  # with USD's library, which takes long to load
 
-    return resized(read_usd(path, leave_out=leave_out), size, path)
+    return resized(read_usd(path, leave_out=leave_out, facing=facing), size, path)
 
 
 def read_animation(path: Path) -> Animation:
@@ -79,7 +82,8 @@ def read_character(
     detail: Detail | None = None,
     size: FigureSize = AS_FOUND,
     leave_out: Sequence[str] = (),
+    facing: Facing = AS_SHOWN,
 ) -> Character:
     """Read a rigged, textured character and bring its materials into one atlas of `atlas_size` texels a side."""
-    surfaces = read_surfaces(path, size=size, leave_out=leave_out)
+    surfaces = read_surfaces(path, size=size, leave_out=leave_out, facing=facing)
     return build_atlas(surfaces, uv=uv, size=atlas_size, detail=detail)

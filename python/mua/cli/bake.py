@@ -13,7 +13,7 @@ from mua.cli.options import command_options, lent_by
 from mua.errors import InputError
 
 PANELS = {
-    "Character": ("scale", "height", "leave_out", "uv", "detail"),
+    "Character": ("scale", "height", "facing", "turn", "leave_out", "uv", "detail"),
     "Motion": ("mapping", "feet", "motion_range", "hold_out", "clips"),
     "Training": ("frames", "texels", "recipe", "storage", "seed", "device", "jobs", "work"),
 }

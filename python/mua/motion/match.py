@@ -10,6 +10,7 @@ from mua.motion.joint_places import roles_by_place
 from mua.motion.whole_limbs import with_whole_limbs
 from mua.pose.joint_names import FINGERS, NAMESPACE, SIDES, Roles
 from mua.pose.joint_names import roles as find_roles
+from mua.pose.sides import SWAPPED, true_sides
 from mua.pose.skeleton import Skeleton
 
 
@@ -87,7 +88,8 @@ def _roles(
             if role in found
         )
         notes += (f"The {owner}'s {_listed(mended)} {_are(mended)} recognised by the lengths of the bones: {listed}.",)
-    return found, notes
+    sides = found if stated or poses is None else true_sides(skeleton.names, found, poses)
+    return (found, notes) if sides is found else (sides, (*notes, SWAPPED.format(owner)))
 
 
 def _are(words: tuple[str, ...]) -> str:
