@@ -145,9 +145,11 @@ def test_what_is_measured_of_a_motion_is_shown_with_its_unit(capsys: pytest.Capt
     hand, foot = (
         Reach(f"left {part}", 0.1, share, ("a", "b"), ("c", "d")) for part, share in (("hand", 0.041), ("foot", 0.02))
     )
-    walk = MotionQuality("walk", 1.24, 12.4, -0.0126, 0.333, {"left thigh": 1.25}, (hand, foot), ())
-    wave = MotionQuality("wave", 0.0, None, None, None, {"left thigh": 0.0}, (), ())
+    walk = MotionQuality(
+        "walk", 1.24, 12.4, -0.0126, 0.333, {"left thigh": 1.25}, -3.4, {"left hand": 8.2}, (hand, foot), ()
+    )
+    wave = MotionQuality("wave", 0.0, None, None, None, {"left thigh": 0.0}, None, {}, (), ())
     show(Console(width=120), Check(None, (walk, wave), (), (), (), (), ()))
     rows = [line.replace("│", " ").split() for line in capsys.readouterr().out.splitlines()]
-    assert ["walk", "1.2°", "4%", "12°", "-0.013", "m", "0.33", "m/s"] in rows
+    assert ["walk", "1.2°", "4%", "8°", "-3°", "12°", "-0.013", "m", "0.33", "m/s"] in rows
     assert ["wave", "0.0°"] in rows

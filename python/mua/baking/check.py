@@ -143,7 +143,7 @@ def _quality(settings: BakeSettings, character: Character, motion: LoadedMotion)
     """What a clip keeps of its source; a character's own clip is its source."""
     if settings.motions:
         return measure_motion(motion.source, character.skeleton, motion.clip, motion.matches)
-    return MotionQuality(motion.clip.name, 0.0, None, None, None, {}, (), ())
+    return MotionQuality(motion.clip.name, 0.0, None, None, None, {}, None, {}, (), ())
 
 
 def _notes(loaded: Sequence[LoadedMotion]) -> tuple[str, ...]:

@@ -65,11 +65,23 @@ def _fidelity_table(fidelity: Fidelity) -> Table:
 
 
 def _motion_table(motions: tuple[MotionQuality, ...]) -> Table:
-    table = Table("clip", "limbs", "hands, feet", "facing", "feet", "slide", title="Motion compared with its source")
+    table = Table(
+        "clip",
+        "limbs",
+        "hands, feet",
+        "palms",
+        "head",
+        "facing",
+        "feet",
+        "slide",
+        title="Motion compared with its source",
+    )
     for motion in motions:
         cells = (
             f"{motion.limb_degrees:.1f}°",
             _measured(motion.worst_reach, "{:.0%}"),
+            _measured(motion.worst_hand, "{:.0f}°"),
+            _measured(motion.head_degrees, "{:+.0f}°"),
             _measured(motion.facing_degrees, "{:.0f}°"),
             _measured(motion.feet_height, "{:+.3f} m"),
             _measured(motion.slide, "{:.2f} m/s"),
