@@ -10,6 +10,7 @@ from mua.atlas.detail import read_detail
 from mua.baking.settings import BakeSettings
 from mua.characters.facing import Facing
 from mua.characters.figure_size import FigureSize
+from mua.characters.formats import require_scene
 from mua.errors import InputError
 from mua.files.inputs import is_capture, require_file, require_motion, require_teacher
 from mua.files.write import missing_directory
@@ -100,13 +101,15 @@ def _as_texts(detail: Mapping[str, float] | tuple[str, ...]) -> tuple[str, ...]:
 
 
 def check_inputs(character: Path | None, motions: Sequence[Path]) -> None:
-    """Raises InputError for a file that is not there, and for motion of a format that is not read."""
+    """Raises InputError for a file that is not there, and for one of a format that is not read."""
     if character is not None:
         require_file(character)
     for motion in motions:
         require_motion(motion)
     for motion in motions:
         require_format(motion)
+    if character is not None:
+        require_scene(character)
 
 
 def cores() -> int:

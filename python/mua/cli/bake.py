@@ -7,10 +7,12 @@ import typer
 
 from mua.baking.bake import bake as mua_bake
 from mua.baking.bake import read_settings
+from mua.characters.formats import named_characters
 from mua.cli.console import printer
 from mua.cli.failure import run_command
 from mua.cli.options import command_options, lent_by
 from mua.errors import InputError
+from mua.files.inputs import is_capture
 
 PANELS = {
     "Character": ("scale", "height", "facing", "turn", "leave_out", "uv", "detail"),
@@ -22,6 +24,9 @@ PANELS = {
 @lent_by(mua_bake, command_options(mua_bake, PANELS))
 def main(
     *,
+    more: Annotated[
+        list[Path] | None, typer.Argument(help="With --check: more characters, or directories of them.")
+    ] = None,
     check: Annotated[
         bool, typer.Option("--check", help="Train nothing; in seconds, compare splats and motion with their sources.")
     ] = False,
@@ -35,13 +40,21 @@ def main(
     """
     if json is not None and not check:
         raise InputError("--json: only --check writes it; expected --check too")
-    settings = read_settings(options)
+    given = [path for path in (options["character"], *(more or ())) if path is not None]
+    several = bool(more) or (check and given[:1] and given[0].is_dir() and not is_capture(given[0]))
+    if several and not check:
+        raise InputError(f"{given[1]}: one character is baked at a time; only --check takes several")
+    characters = named_characters(given) if several else []
+    settings = read_settings(options | {"character": None} if several else options)
     if check and (settings.teacher or settings.training):
         raise InputError("--check: compares a character with its file; look at a capture with mua-capture check")
     if check:
-        from mua.cli.check import check_and_show
+        from mua.cli.check import check_and_show, check_many_and_show
 
-        check_and_show(settings, json)
+        if several:
+            check_many_and_show(settings, characters, json)
+        else:
+            check_and_show(settings, json)
         return
 
     from mua.baking.pipeline import bake  # after the options are checked, because it takes seconds to load

@@ -1,11 +1,14 @@
 """What `mua-bake --check` prints."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
+import typer
 from rich.console import Console
 from rich.table import Table
 
-from mua.baking.check import Check, check, write_json
+from mua.baking.check import Check, as_dict, check, write_json
+from mua.baking.check_many import GOOD, LOOK, REFUSED, Checked, check_many
 from mua.baking.settings import BakeSettings
 from mua.cli.console import printer, say
 from mua.cli.display import Display
@@ -14,20 +17,52 @@ from mua.files.write import require_writable
 from mua.motion.quality import MotionQuality
 
 FEW = 5  # joints that are named
+LOOKS_WRONG = 3  # exit status where something looks wrong
 
 
 def check_and_show(settings: BakeSettings, json: Path | None) -> None:
-    """Check a character and its motion and print what was found."""
+    """Check a character and its motion and print what was found; status LOOKS_WRONG where something looks wrong."""
     if json is not None:
         require_writable(json)
     console = printer()
     with Display(console) as display:
         found = check(settings, display)
     if json is not None:
-        write_json(json, settings, found)
+        write_json(json, as_dict(settings, found))
     show(console, found)
     if json is not None:
         say(console, str(json))
+    if found.warnings:
+        raise typer.Exit(LOOKS_WRONG)
+
+
+def check_many_and_show(settings: BakeSettings, characters: Sequence[Path], json: Path | None) -> None:
+    """Check many characters and print a line for each, worst first.
+
+    Ends the command with status 1 where one is refused, else with LOOKS_WRONG where one looks wrong.
+    """
+    if json is not None:
+        require_writable(json)
+    console = printer()
+    with Display(console) as display:
+        found = check_many(settings, characters, display)
+    if json is not None:
+        write_json(json, [one.figures or {"character": str(one.path), "refused": one.sentences[0]} for one in found])
+    for one in found:
+        say(console, line_of(one))
+    counts = [sum(one.verdict == verdict for one in found) for verdict in (GOOD, LOOK, REFUSED)]
+    say(console, "{} characters: {} good, {} to look at, {} refused".format(len(found), *counts))
+    say(console, f"pictures: {settings.output.with_name('*_check.png')}")
+    if counts[2] or counts[1]:
+        raise typer.Exit(1 if counts[2] else LOOKS_WRONG)
+
+
+def line_of(one: Checked) -> str:
+    """A character in a line: the verdict, the file, its figures, and the first sentence of what is wrong."""
+    figures = "" if one.iou is None else f" overlap {100 * one.iou:.1f} %, inside {one.psnr:.1f} dB."
+    said = "" if not one.sentences else f" {one.sentences[0]}"
+    more = "" if len(one.sentences) < 2 else f" (and {len(one.sentences) - 1} more)"
+    return f"{one.verdict:<8}{one.path}:{figures}{said}{more}"
 
 
 def show(console: Console, found: Check) -> None:
