@@ -30,6 +30,7 @@ def main(
     check: Annotated[
         bool, typer.Option("--check", help="Train nothing; in seconds, compare splats and motion with their sources.")
     ] = False,
+    verbose: Annotated[bool, typer.Option("--verbose", help="Print lists of joints and sentences in full.")] = False,
     json: Annotated[Path | None, typer.Option(help="With --check: JSON file to write all figures to.")] = None,
     **options: Any,
 ) -> None:
@@ -38,9 +39,18 @@ def main(
     A table of errors and a contact sheet are written beside it. To resume an interrupted run, give the same command
     again.
     """
+    try:
+        _bake(options, more or [], check=check, json=json, verbose=verbose)
+    except InputError as error:
+        if verbose:
+            raise error.in_full() from error
+        raise
+
+
+def _bake(options: dict[str, Any], more: list[Path], *, check: bool, json: Path | None, verbose: bool) -> None:
     if json is not None and not check:
         raise InputError("--json: only --check writes it; expected --check too")
-    given = [path for path in (options["character"], *(more or ())) if path is not None]
+    given = [path for path in (options["character"], *more) if path is not None]
     several = bool(more) or (check and given[:1] and given[0].is_dir() and not is_capture(given[0]))
     if several and not check:
         raise InputError(f"{given[1]}: one character is baked at a time; only --check takes several")
@@ -54,14 +64,14 @@ def main(
         if several:
             check_many_and_show(settings, characters, json)
         else:
-            check_and_show(settings, json)
+            check_and_show(settings, json, verbose=verbose)
         return
 
     from mua.baking.pipeline import bake  # after the options are checked, because it takes seconds to load
     from mua.cli.display import Display, show
 
     console = printer()
-    with Display(console) as display:
+    with Display(console, verbose=verbose) as display:
         baked = bake(settings, display)
     show(console, baked)
 

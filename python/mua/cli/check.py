@@ -10,26 +10,27 @@ from rich.table import Table
 from mua.baking.check import Check, as_dict, check, write_json
 from mua.baking.check_many import GOOD, LOOK, REFUSED, Checked, check_many
 from mua.baking.settings import BakeSettings
-from mua.cli.console import printer, say
+from mua.cli.console import brief, printer, say
 from mua.cli.display import Display
 from mua.fidelity.compare import Fidelity
 from mua.files.write import require_writable
 from mua.motion.quality import MotionQuality
 
 FEW = 5  # joints that are named
+SCREEN = 8  # sentences and clips that are shown, unless all are asked for
 LOOKS_WRONG = 3  # exit status where something looks wrong
 
 
-def check_and_show(settings: BakeSettings, json: Path | None) -> None:
+def check_and_show(settings: BakeSettings, json: Path | None, *, verbose: bool = False) -> None:
     """Check a character and its motion and print what was found; status LOOKS_WRONG where something looks wrong."""
     if json is not None:
         require_writable(json)
     console = printer()
-    with Display(console) as display:
+    with Display(console, verbose=verbose) as display:
         found = check(settings, display)
     if json is not None:
         write_json(json, as_dict(settings, found))
-    show(console, found)
+    show(console, found, verbose=verbose)
     if json is not None:
         say(console, str(json))
     if found.warnings:
@@ -65,16 +66,25 @@ def line_of(one: Checked) -> str:
     return f"{one.verdict:<8}{one.path}:{figures}{said}{more}"
 
 
-def show(console: Console, found: Check) -> None:
-    """Print what looks wrong, then the figures, what readers changed, how many joints move, and the files written."""
-    for sentence in found.warnings:
+def show(console: Console, found: Check, *, verbose: bool = False) -> None:
+    """Print what looks wrong, then the figures, what readers changed, how many joints move, and the files written.
+
+    Unless `verbose`, long lists are cut so that all fits on a screen.
+    """
+    shown = len(found.warnings) if verbose else SCREEN
+    for sentence in found.warnings[:shown]:
         say(console, f"Look at this: {sentence}")
+    if len(found.warnings) > shown:
+        say(console, f"{len(found.warnings) - shown} more sentences like these (--verbose prints them).")
     if not found.warnings:
         say(console, "Nothing looks wrong.")
     if found.fidelity is not None:
         console.print(_fidelity_table(found.fidelity))
     if any(motion.limbs for motion in found.motions):
-        console.print(_motion_table(found.motions))
+        motions = found.motions if verbose else sorted(found.motions, key=lambda motion: -len(motion.flaws))[:SCREEN]
+        console.print(_motion_table(tuple(motions)))
+        if len(found.motions) > len(motions):
+            say(console, f"{len(found.motions) - len(motions)} more clips (--verbose prints them).")
     elif found.motions:
         brought = found.matched or found.unmatched  # by a motion file
         whose = (
@@ -84,9 +94,12 @@ def show(console: Console, found: Check) -> None:
         )
         say(console, f"{whose}: {', '.join(motion.name for motion in found.motions)}")
     for sentence in found.notes:
-        say(console, sentence)
+        say(console, sentence if verbose else brief(sentence))
     if found.matched or found.unmatched:
         say(console, _joints(found))
+    if verbose and found.matched:
+        say(console, "Pairs: " + ", ".join(f"{pair.target} by {pair.source}" for pair in found.matched))
+        say(console, "Nothing moves: " + (", ".join(found.unmatched) or "no joint with skin") + ".")
     for path in found.written:
         say(console, str(path))
 
