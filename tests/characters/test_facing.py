@@ -12,7 +12,6 @@ from test_upright import whole
 from mua.atlas.surfaces import Surfaces
 from mua.characters.assemble import assemble
 from mua.characters.facing import Facing
-from mua.errors import InputError
 from mua.pose.joint_names import roles
 from mua.scene import Scene
 
@@ -95,11 +94,6 @@ def test_a_mirrored_figure_is_said_and_has_its_left_on_the_left() -> None:
     assert any(note.startswith("A negative scale of mirror mirrors the figure") for note in surfaces.notes)
     assert ahead(surfaces)[2] > 0.9
     assert left(surfaces) > 0
-
-
-def test_a_turn_that_is_no_number_is_refused() -> None:
-    with pytest.raises(InputError, match="--turn nan: expected a finite number of degrees"):
-        Facing(turn=float("nan"))
 
 
 def test_the_person_of_these_tests_has_its_left_on_the_left() -> None:

@@ -1,6 +1,5 @@
 """Where a character faces in its file, and the turn that makes it face +Z."""
 
-import math
 import re
 from dataclasses import dataclass, replace
 from typing import Literal, TypeAlias
@@ -9,7 +8,6 @@ import numpy as np
 
 from mua.arrays import Array
 from mua.characters.bind_pose import Bind
-from mua.errors import InputError
 from mua.pose.joint_names import SIDES as SIDE_NAMES
 from mua.pose.joint_names import Roles, roles
 from mua.pose.sides import SWAPPED, Figure, evidence, exchanged
@@ -39,11 +37,6 @@ class Facing:
 
     towards: Direction | None = None  # in the file, Y up; None: by what the character shows
     turn: float = 0.0  # degrees from there, from +Z towards +X
-
-    def __post_init__(self) -> None:
-        """Errors: InputError where the turn is no finite number."""
-        if not math.isfinite(self.turn):
-            raise InputError(f"--turn {self.turn:g}: expected a finite number of degrees")
 
 
 AS_SHOWN = Facing()
