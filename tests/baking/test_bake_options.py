@@ -142,5 +142,5 @@ def test_a_work_directory_that_exists_is_asked_itself(
 def test_every_argument_of_the_function_is_an_option_of_the_command(
     function: Callable[..., object], command: ModuleType
 ) -> None:
-    options = set(inspect.signature(command.main).parameters) - {"check", "json"}
+    options = set(inspect.signature(command.main).parameters) - {"check", "json", "more", "verbose"}
     assert options == set(inspect.signature(function).parameters) - {"listener"}

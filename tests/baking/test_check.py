@@ -8,6 +8,7 @@ import pytest
 import typer
 from bvh_files import BVH
 from column_files import column_file
+from commands import Commands
 from PIL import Image
 from rich.console import Console
 from silent import Silent
@@ -20,7 +21,7 @@ from mua.baking.pipeline import bake
 from mua.baking.settings import BakeSettings
 from mua.characters.read import read_surfaces
 from mua.cli.bake import main
-from mua.cli.check import show
+from mua.cli.check import LOOKS_WRONG, show
 from mua.errors import InputError
 from mua.fidelity.strips import CAPTION
 from mua.motion.load import load_motions
@@ -36,7 +37,7 @@ app.command()(main)
 def run(*arguments: object) -> str:
     """What the command prints; its errors are raised."""
     result = CliRunner().invoke(app, [str(argument) for argument in arguments], catch_exceptions=False)
-    assert result.exit_code == 0
+    assert result.exit_code == (LOOKS_WRONG if "Look at this" in result.output else 0)
     return result.output
 
 
@@ -141,13 +142,43 @@ def test_what_is_wrong_comes_first_and_few_joints_are_named(capsys: pytest.Captu
     assert lines == ["Nothing looks wrong.", "The motion moves 3 joints, all that have skin."]
 
 
+def test_only_a_verbose_check_lists_all_joints_and_sentences(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    character, motion = column_file(tmp_path), tmp_path / "wave.bvh"
+    motion.write_text(BVH)
+    given = (character, "--motion", motion, "--check", "--texels", 64, "-o", tmp_path / "a.muaavatar")
+    assert "Nothing moves: head." not in run(*given)
+    assert "Nothing moves: head." in run(*given, "--verbose")
+    many = tuple(f"limb {number} is off" for number in range(12))
+    note = "joints are recognised: " + ", ".join(f"j{number} the left arm" for number in range(9)) + "."
+    for verbose in (False, True):
+        show(Console(width=200), Check(None, (), (), (), (note,), many, ()), verbose=verbose)
+        lines = capsys.readouterr().out.splitlines()
+        assert ("4 more sentences like these (--verbose prints them)." in lines) is not verbose
+        assert ("Look at this: limb 11 is off" in lines) is verbose
+        assert (note in lines) is verbose
+        assert any(line.endswith("j2 the left arm and 6 more (--verbose lists them).") for line in lines) is not verbose
+
+
+def test_a_refused_motion_is_a_short_sentence_and_verbose_names_the_joints(tmp_path: Path, command: Commands) -> None:
+    character, motion = column_file(tmp_path), tmp_path / "wave.bvh"
+    motion.write_text(BVH)
+    given = ("bake", character, "--motion", motion, "-o", tmp_path / "a.muaavatar")
+    assert "joints of the motion" not in command(*given).sentence
+    ended = command(*given, "--verbose")
+    assert (ended.status, ended.err.splitlines()[-1]) == (1, "joints of the character: hips, spine, head")
+
+
 def test_what_is_measured_of_a_motion_is_shown_with_its_unit(capsys: pytest.CaptureFixture[str]) -> None:
     hand, foot = (
         Reach(f"left {part}", 0.1, share, ("a", "b"), ("c", "d")) for part, share in (("hand", 0.041), ("foot", 0.02))
     )
-    walk = MotionQuality("walk", 1.24, 12.4, -0.0126, 0.333, {"left thigh": 1.25}, (hand, foot), ())
-    wave = MotionQuality("wave", 0.0, None, None, None, {"left thigh": 0.0}, (), ())
+    walk = MotionQuality(
+        "walk", 1.24, 12.4, -0.0126, 0.333, {"left thigh": 1.25}, -3.4, {"left hand": 8.2}, (hand, foot), ()
+    )
+    wave = MotionQuality("wave", 0.0, None, None, None, {"left thigh": 0.0}, None, {}, (), ())
     show(Console(width=120), Check(None, (walk, wave), (), (), (), (), ()))
     rows = [line.replace("│", " ").split() for line in capsys.readouterr().out.splitlines()]
-    assert ["walk", "1.2°", "4%", "12°", "-0.013", "m", "0.33", "m/s"] in rows
+    assert ["walk", "1.2°", "4%", "8°", "-3°", "12°", "-0.013", "m", "0.33", "m/s"] in rows
     assert ["wave", "0.0°"] in rows

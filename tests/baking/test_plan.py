@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from mua.baking.plan import HELD_FRAMES, HELD_PART, RUN_UP, WHOLE_FRAMES, HeldOut, plan, split
+from mua.baking.plan import HELD_FRAMES, HELD_PART, RUN_UP, WHOLE_FRAMES, HeldOut, describe_plan, plan, split
 from mua.errors import InputError
 from mua.pose.clip import Clip
 
@@ -67,3 +67,17 @@ def test_held_out_clips_share_a_quarter_of_the_frames_up_to_so_many_each() -> No
     assert [len(one.wanted) for one in many] == [HELD_FRAMES] * 3
     assert all(one.held_out and one.whole == one.wanted for one in (*few, *many))
     assert SimpleNamespace(**vars(many[0])).run_up is None
+
+
+def test_how_many_frames_are_recorded_is_said_with_the_reason() -> None:
+    training, held = split([clip("walk", 100), clip("nod", 50)], [])
+    asked = plan(training, held, frames=60)
+    said = describe_plan(asked, [], asked=60)
+    spread = "60 of 120 training frames, spread evenly over 2 clips (the preset or --frames asks for 60)"
+    assert said == f"Recorded are {spread} and 15 held-out frames to measure errors on."
+    few = plan(training, [], frames=240)
+    beside = plan([clip("range", 300)], [], frames=135)
+    assert describe_plan(few, beside, asked=240) == (
+        "Recorded are all 120 training frames of 2 clips (the preset or --frames asks for 240) and 135 frames of the "
+        "built-in range of motion (--motion-range none leaves them out)."
+    )

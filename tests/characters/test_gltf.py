@@ -105,7 +105,7 @@ def put(name: str, values: Any, dtype: str = "f4") -> Callable[[Glb], None]:
 
 NAN = np.where(np.arange(len(POINTS))[:, None] == 5, np.nan, POINTS)
 BROKEN: dict[str, tuple[Callable[[Glb], Any], str]] = {
-    "unknown extension": (lambda g: g.json.update(extensionsRequired=["KHR_texture_basisu"]), "KHR_texture_basisu"),
+    "unknown extension": (lambda g: g.json.update(extensionsRequired=["EXT_texture_avif"]), "its pictures are AVIF"),
     "old version": (lambda g: g.json.update(asset={"version": "1.0"}), r"asset\.version is 1\.0"),
     "accessor outside": (lambda g: accessor_of(g, "POSITION").update(count=999), "accessors.*reaches to byte"),
     "accessor missing": (lambda g: primitive(g)["attributes"].update(POSITION=99), r"attributes\.POSITION is 99"),

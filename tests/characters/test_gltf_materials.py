@@ -5,7 +5,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from gltf_files import PICTURE, TRIANGLES, UV, read, textured
+from gltf_files import PICTURE, TRIANGLES, UV, Glb, read, textured
+from ktx2_files import ktx2
 from PIL import Image
 
 from mua.atlas import pictures
@@ -168,14 +169,35 @@ def test_unlit_materials_and_variants_are_named(tmp_path: Path) -> None:
     assert "The file's material variants are left out, its default is drawn: night, day." in notes
 
 
-def test_compressed_pictures_are_refused_with_advice(tmp_path: Path) -> None:
-    glb = textured(PICTURE)
-    glb.json["textures"] = [{"extensions": {"KHR_texture_basisu": {"source": 0}}}]
-    with pytest.raises(InputError, match=r"textures\[0\] is a KTX2 picture .* PNG or JPEG, .* ktxdecompress"):
-        read(glb, tmp_path)
+COLORS = [[(255, 0, 0, 255), (0, 128, 7, 60)], [(9, 8, 250, 255), (1, 2, 3, 0)], [(90, 90, 90, 9), (200, 1, 30, 40)]]
+
+
+def with_ktx2(content: bytes, **texture: Any) -> Glb:
+    """The column with a KTX2 picture, which the file requires readers to know."""
+    glb = textured(PICTURE, alphaMode="BLEND")
+    glb.json["images"].append({"bufferView": glb.view(content), "mimeType": "image/ktx2"})
+    source = {"source": len(glb.json["images"]) - 1}
+    glb.json["textures"] = [{"extensions": {"KHR_texture_basisu": source}, **texture}]
     glb.json["extensionsRequired"] = ["KHR_texture_basisu"]
-    with pytest.raises(InputError, match=r"its pictures are KTX2; export it with PNG or JPEG .* ktxdecompress"):
-        read(glb, tmp_path)
+    return glb
+
+
+def test_ktx2_pictures_are_read_texel_by_texel(tmp_path: Path) -> None:
+    (material,) = read(with_ktx2(ktx2(COLORS)), tmp_path).materials
+    expected = np.array(COLORS, np.uint8).repeat(4, axis=0).repeat(4, axis=1)
+    np.testing.assert_array_equal(material.image, expected)
+
+
+def test_a_png_goes_before_the_ktx2_beside_it(tmp_path: Path) -> None:
+    (material,) = read(with_ktx2(ktx2(COLORS), source=0), tmp_path).materials
+    assert material.image.shape == np.shape(PICTURE)
+
+
+def test_broken_ktx2_pictures_are_named(tmp_path: Path) -> None:
+    content = ktx2(COLORS)
+    for broken in (content[:100], content[:-16], content[:12] + bytes(36) + content[48:]):
+        with pytest.raises(InputError, match=r"images\[1\] is not a PNG, JPEG, WebP or KTX2 that can be decoded"):
+            read(with_ktx2(broken), tmp_path)
 
 
 @pytest.mark.parametrize(

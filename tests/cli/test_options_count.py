@@ -38,6 +38,8 @@ BAKE: dict[str, Any] = {
     "detail": {"head": 2},
     "scale": 2.0,
     "height": 1.5,
+    "facing": "-x",
+    "turn": 30.0,
     "storage": "i8",
     "jobs": 9999,
     "seed": 3,

@@ -63,9 +63,9 @@ def test_what_the_readme_shows_runs_after_the_demo(tmp_path: Path, monkeypatch: 
 def test_a_bake_is_ordered_as_shown(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The bake itself takes minutes; here it is only ordered."""
     monkeypatch.chdir(tmp_path)
-    Path("hero.glb").touch()
+    Path("hero.glb").write_bytes(b"glTF")
     Path("walks").mkdir()
-    Path("walks/walk_07.bvh").touch()
+    Path("walks/walk_07.bvh").write_text("HIERARCHY")
     given: list[BakeSettings] = []
     errors = {"training": SimpleNamespace(explained=lambda attribute: {"SH": 0.9}[attribute])}
 

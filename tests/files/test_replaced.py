@@ -72,7 +72,8 @@ def test_what_a_check_of_a_character_writes(
     monkeypatch.setattr(check, "fidelity_sheet", lambda _: Image.new("RGB", (2, 2)))
     found = check.Check(None, (), (), (), (), (), ())
     check.write_sheet(opened("a_check.png"), None)  # type: ignore[arg-type]
-    check.write_json(opened("a.json"), BakeSettings(tmp_path / "a.muaavatar", tmp_path, preset("tiny")), found)
+    settings = BakeSettings(tmp_path / "a.muaavatar", tmp_path, preset("tiny"))
+    check.write_json(opened("a.json"), check.as_dict(settings, found))
     assert replaced(tmp_path / "a_check.png")
     assert replaced(tmp_path / "a.json")
 

@@ -191,7 +191,7 @@ def test_a_bake_gets_the_settings_that_its_options_say(
 
     monkeypatch.setattr(pipeline, "bake", carry_out)
     monkeypatch.chdir(tmp_path)
-    Path("walk.bvh").touch()
+    Path("walk.bvh").write_text("HIERARCHY")
     motion: dict[str, Any] = {"motion": "walk.bvh", "mapping": {"a": "b"}}
     with caplog.at_level("INFO"):
         mua.bake(output=Path("a.muaavatar"), clips=2, hold_out="turn", detail={"head": 3}, texels=64, **motion)

@@ -61,6 +61,13 @@ def test_a_bind_pose_may_face_anywhere() -> None:
     assert abs(front_of(backwards, *turned(backwards, Rotation.identity()))) == pytest.approx(np.pi, abs=ROUNDING)
 
 
+def test_a_figure_without_toes_whose_sides_are_swapped_faces_where_bind_poses_do() -> None:
+    skeleton = named(named(person(), "Left", "Right"), "Toe", "Claw")
+    for degrees in (0, 70):
+        front = front_of(skeleton, *turned(skeleton, Rotation.from_euler("y", degrees, degrees=True)))
+        assert front == pytest.approx(np.radians(degrees), abs=ROUNDING)
+
+
 def test_a_bind_pose_that_is_a_little_twisted_faces_along_an_axis_all_the_same() -> None:
     skeleton = person()
     rotations, _ = turned(skeleton, Rotation.from_euler("y", 20, degrees=True))

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from people import chain, person, upright
+from people import chain, person, upright, walk
 
 from mua.errors import InputError
 from mua.motion.match import joint_pairs, match_joints, require_limbs, unmatched_target
@@ -56,8 +56,9 @@ def test_prefers_the_mapping() -> None:
 
 def test_says_so_where_no_name_matches() -> None:
     source, target = chain("Bone0", "Bone1"), chain("Hips", "LeftArm")
-    with pytest.raises(InputError, match=r"Bone1.*LeftArm.*mapping file"):
+    with pytest.raises(InputError, match=r"no joint name of it matches .* mapping file") as refused:
         require_limbs(source, target, match_joints(source, target))
+    assert refused.value.details == "joints of the motion: Bone0, Bone1\njoints of the character: Hips, LeftArm"
 
 
 def test_rejects_a_mapping_of_unknown_joints() -> None:
@@ -168,3 +169,19 @@ def test_what_a_file_says_of_its_joints_goes_before_their_names() -> None:
     crossed = match_joints(named, named, target_stated={"Neck": "head", "Head": "neck"})
     assert crossed.chains == alike | {2: (3, 3), 3: (2, 2)}
     assert crossed.roles["spine"] == (1,)
+
+
+def test_a_walk_whose_names_are_swapped_moves_the_side_that_its_body_has() -> None:
+    source = person()
+    other = {"Left": "Right", "Right": "Left"}
+    names = tuple(
+        next((other[side] + name.removeprefix(side) for side in other if name.startswith(side)), name)
+        for name in source.names
+    )
+    clip = walk(source)
+    _, poses = source.world(clip.rotations, clip.translations)
+    found = match_joints(replace(source, names=names), person(), source_poses=poses)
+    thigh = person().names.index("LeftUpLeg")
+    assert names[found.chains[thigh][0]] == "RightUpLeg"
+    assert any("left and right are exchanged" in note for note in found.notes)
+    assert match_joints(source, person(), source_poses=poses).notes == ()

@@ -8,6 +8,7 @@ from people import person, retarget, still, upright, walk, world
 from scipy.spatial.transform import Rotation
 
 from mua import rotation
+from mua.motion.head_and_hands import head_flaws
 from mua.motion.match import match_joints
 from mua.motion.quality import MotionQuality, measure_motion
 from mua.motion.source import SourceMotion
@@ -141,3 +142,40 @@ def test_measures_what_there_is_of_a_body() -> None:
     clip = still(half)
     found = measured(half, clip, clip)
     assert (found.limb_degrees, found.facing_degrees, found.feet_height, found.slide) == (0, None, None, None)
+
+
+@pytest.mark.parametrize(("nod", "expected"), [(-40, 40), (40, -40), (0, 0)])
+def test_a_head_that_looks_elsewhere_than_in_the_motion_is_measured(nod: float, expected: float) -> None:
+    skeleton = person()
+    clip = walk(skeleton)
+    found = measured(skeleton, clip, turned(skeleton, clip, "Head", "x", nod))
+    assert found.head_degrees == pytest.approx(expected, abs=0.1)
+    says = [flaw for flaw in found.flaws if "the head looks" in flaw]
+    way = "upward" if expected > 0 else "downward"
+    assert says == ([] if not nod else [f"walk: the head looks 40 degrees {way}; in the motion 0 degrees downward."])
+
+
+def test_a_head_that_stares_upward_is_said_where_the_motion_does_not_tell() -> None:
+    assert head_flaws("dance", 40.0, None) == ["dance: the head looks 40 degrees upward in half of the frames."]
+    assert head_flaws("bows", -50.0, None) == head_flaws("still", 3.0, None) == head_flaws("lies", None, 2.0) == []
+
+
+def with_fingers(skeleton: Skeleton) -> Skeleton:
+    """The person with four more fingers on each hand, side by side, palms down."""
+    names, parents, offsets = list(skeleton.names), list(skeleton.parents), list(skeleton.bind_translations)
+    for side, way in (("Left", 1), ("Right", -1)):
+        for finger, ahead in (("Index", 0.03), ("Pinky", -0.03)):
+            names.append(f"{side}Hand{finger}1")
+            parents.append(skeleton.names.index(f"{side}Hand"))
+            offsets.append(np.array([way * 0.09, 0, ahead]))
+    return upright(names, parents, offsets)
+
+
+def test_a_hand_that_is_turned_otherwise_is_measured_by_its_palm() -> None:
+    skeleton = with_fingers(person())
+    clip = still(skeleton, 30)
+    found = measured(skeleton, clip, turned(skeleton, clip, "LeftHand", "x", 60))
+    assert found.hands == pytest.approx({"left hand": 60, "right hand": 0}, abs=ANGLE_BOUND)
+    assert "still: hands are turned otherwise than in the motion (degrees: left hand 60)." in found.flaws
+    assert found.worst_hand == pytest.approx(60, abs=ANGLE_BOUND)
+    assert measured(person(), walk(person()), walk(person())).worst_hand is None

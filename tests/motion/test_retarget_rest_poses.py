@@ -115,6 +115,30 @@ def test_hips_and_shoulders_of_a_bind_pose_whose_chest_is_turned_each_face_where
         assert angle(bone(target, found, *ends), bone(source, clip, *ends)) < np.radians(2 * ESTIMATE_BOUND)
 
 
+def test_a_head_that_looks_down_while_the_body_is_most_upright_does_not_look_up_in_the_rest() -> None:
+    """A dancer who bows the head for a quarter of the clip, in a file whose rest pose says nothing of heads."""
+    source, target = person(), person(size=1.1, axes=2)
+    joints = [joint for joint, name in enumerate(source.names) if name != "HeadTop_End"]
+    clip = walk(source)
+    bowed = np.arange(len(clip)) < len(clip) // 4
+    for name, degrees in (("Spine", np.where(bowed, 0, 8)), ("Head", np.where(bowed, 45, -8))):
+        turns = Rotation.from_euler("x", degrees[:, None], degrees=True).as_quat(scalar_first=True)
+        clip.rotations[:, source.names.index(name)] = turns
+    plain, aligned = bone_aligned(source, clip)
+    parents = np.array([joints.index(parent) if parent >= 0 else -1 for parent in plain.parents[joints]], np.int32)
+    names = tuple(plain.names[joint] for joint in joints)
+    bare = Skeleton(names, parents, plain.bind_rotations[joints], plain.bind_translations[joints], 0)
+    motion = Clip("dance", clip.rate, aligned.rotations[:, joints], aligned.translations[:, joints])
+    found, _ = retarget(SourceMotion(bare, motion), target)
+    head = target.names.index("Head")
+    rest, _ = target.world(target.bind_rotations, target.bind_translations)
+    moved = rotation.multiply(world(target, found)[0][:, head], rotation.conjugate(rest[head]))
+    looks = np.degrees(np.arcsin(rotation.rotate(moved, np.broadcast_to([0.0, 0, 1], (len(moved), 3)))[:, 1]))
+    # The mean over the clip is level, a quarter of it 45 degrees down, so the others are 45 / 4 up.
+    assert np.median(looks[~bowed]) == pytest.approx(45 / 4, abs=4)
+    assert np.median(looks[bowed]) == pytest.approx(-45 * 3 / 4, abs=4)
+
+
 @pytest.mark.parametrize(("stands", "swings"), [("Left", "Right"), ("Right", "Left")])
 def test_a_sole_is_level_while_its_own_foot_stands(stands: str, swings: str) -> None:
     """The ankles of source and target lie at other heights, so that a foot's bone alone would tilt the sole."""

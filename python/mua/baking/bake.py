@@ -18,6 +18,7 @@ from mua.baking.shared_options import (
     StorageOption,
     TexelsOption,
 )
+from mua.characters.facing import Direction
 from mua.extras import naming_extras
 from mua.motion.planted_feet import Feet
 from mua.option import Option, read_options
@@ -92,6 +93,13 @@ def bake(
     ] = (),
     scale: Annotated[float | None, Option("Factor by which to multiply the size in the character file.")] = None,
     height: Annotated[float | None, Option("Height to scale the character to, in metres.")] = None,
+    facing: Annotated[
+        Direction | None,
+        Option("Direction in which the character faces in its file, Y up: +x, -x, +z or -z.", default="as it shows"),
+    ] = None,
+    turn: Annotated[
+        float, Option("Degrees by which to turn the character about its vertical axis, from +Z towards +X.")
+    ] = 0.0,
     recipe: RecipeOption = "closed-form",
     storage: StorageOption = "f16",
     seed: SeedOption = 0,

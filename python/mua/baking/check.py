@@ -95,9 +95,9 @@ def write_sheet(path: Path, fidelity: Fidelity) -> None:
         fidelity_sheet(fidelity).save(temporary)
 
 
-def as_json(settings: BakeSettings, found: Check) -> str:
+def as_dict(settings: BakeSettings, found: Check) -> dict[str, Any]:
     """Every figure, unrounded."""
-    content: dict[str, Any] = {
+    return {
         "character": None if settings.character is None else str(settings.character),
         "texels": settings.student.texels,
         "fidelity": None if found.fidelity is None else report.as_dict(found.fidelity),
@@ -107,11 +107,10 @@ def as_json(settings: BakeSettings, found: Check) -> str:
         "warnings": found.warnings,
         "notes": found.notes,
     }
-    return json.dumps(content, indent=1)
 
 
-def write_json(path: Path, settings: BakeSettings, found: Check) -> None:
-    write_bytes(path, (as_json(settings, found) + "\n").encode())
+def write_json(path: Path, content: object) -> None:
+    write_bytes(path, (json.dumps(content, indent=1) + "\n").encode())
 
 
 def _without_flaws(quality: MotionQuality) -> dict[str, Any]:
@@ -143,7 +142,7 @@ def _quality(settings: BakeSettings, character: Character, motion: LoadedMotion)
     """What a clip keeps of its source; a character's own clip is its source."""
     if settings.motions:
         return measure_motion(motion.source, character.skeleton, motion.clip, motion.matches)
-    return MotionQuality(motion.clip.name, 0.0, None, None, None, {}, (), ())
+    return MotionQuality(motion.clip.name, 0.0, None, None, None, {}, None, {}, (), ())
 
 
 def _notes(loaded: Sequence[LoadedMotion]) -> tuple[str, ...]:

@@ -8,7 +8,9 @@ from typing import Any
 
 from mua.atlas.detail import read_detail
 from mua.baking.settings import BakeSettings
+from mua.characters.facing import Facing
 from mua.characters.figure_size import FigureSize
+from mua.characters.formats import require_scene
 from mua.errors import InputError
 from mua.files.inputs import is_capture, require_file, require_motion, require_teacher
 from mua.files.write import missing_directory
@@ -31,6 +33,7 @@ def bake_settings(options: Mapping[str, Any]) -> BakeSettings:
         motions=options["motion"],
         mapping=_joints(options["mapping"]),
         detail=read_detail(_as_texts(options["detail"]), uv=options["uv"]),
+        facing=Facing(options["facing"], options["turn"]),
         size=FigureSize(scale=options["scale"], height=options["height"]),
         jobs=cores() if options["jobs"] is None else options["jobs"],
     )
@@ -59,8 +62,8 @@ def _check_motion_options(settings: BakeSettings) -> None:
 
 def _with_trained_teacher(settings: BakeSettings, options: Mapping[str, Any]) -> BakeSettings:
     """The settings of a bake whose teacher is, or is going to be, trained on images."""
-    for name in ("uv", "detail", "scale", "height", "leave_out"):
-        if options[name] not in (None, (), {}, "auto"):
+    for name in ("uv", "detail", "scale", "height", "facing", "turn", "leave_out"):
+        if options[name] not in (None, (), {}, "auto", 0.0):
             raise InputError(
                 f"--{name.replace('_', '-')}: the capture's own capture.json says it; leave the option out"
             )
@@ -98,13 +101,15 @@ def _as_texts(detail: Mapping[str, float] | tuple[str, ...]) -> tuple[str, ...]:
 
 
 def check_inputs(character: Path | None, motions: Sequence[Path]) -> None:
-    """Raises InputError for a file that is not there, and for motion of a format that is not read."""
+    """Raises InputError for a file that is not there, and for one of a format that is not read."""
     if character is not None:
         require_file(character)
     for motion in motions:
         require_motion(motion)
     for motion in motions:
         require_format(motion)
+    if character is not None:
+        require_scene(character)
 
 
 def cores() -> int:

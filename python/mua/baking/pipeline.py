@@ -12,7 +12,7 @@ from mua.baking.distillation import Baked, Distillation, choose_device, distil_s
 from mua.baking.filmed import bake_trained_teacher
 from mua.baking.listener import Listener
 from mua.baking.options import check_output
-from mua.baking.plan import plan, split
+from mua.baking.plan import describe_plan, plan, split
 from mua.baking.playback import choose
 from mua.baking.ranges import clips_of, planned_range, settings_for
 from mua.baking.recorded import recorded, recording_key
@@ -57,7 +57,9 @@ def _bake(settings: BakeSettings, device: torch.device, listener: Listener) -> B
     planned = plan(training, held, frames=settings.student.frames)
     choose(clips, settings.clips)  # before hours of work
     recorded_frames = sum(len(clip.wanted) for clip in planned if not clip.held_out)
-    planned += planned_range(settings, character, clips, recorded_frames)
+    ranges = planned_range(settings, character, clips, recorded_frames)
+    listener.note(describe_plan(planned, ranges, asked=settings.student.frames))
+    planned += ranges
 
     require_writable(settings.output)
     fidelity = _fidelity(character, clips, settings.student.texels, listener)

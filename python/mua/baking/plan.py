@@ -77,6 +77,26 @@ def plan(training: Sequence[Clip], held: Sequence[HeldOut], *, frames: int) -> l
     return planned
 
 
+def describe_plan(planned: Sequence[PlannedClip], ranges: Sequence[PlannedClip], *, asked: int) -> str:
+    """How many frames are recorded of `planned` clips and of the built-in range of motion, and why."""
+    training, held = ([clip for clip in planned if clip.held_out is held_out] for held_out in (False, True))
+    wanted, there = sum(len(clip.wanted) for clip in training), sum(len(clip.clip) for clip in training)
+    asks = f"the preset or --frames asks for {asked:,}"
+    own = f"{wanted:,} of {there:,} training frames, spread evenly over {_clips(training)} ({asks})"
+    if wanted == there:
+        own = f"all {there:,} training frames of {_clips(training)} ({asks})"
+    parts = [own]
+    if count := sum(len(clip.wanted) for clip in held):
+        parts.append(f"{count:,} held-out frames to measure errors on")
+    if count := sum(len(clip.wanted) for clip in ranges):
+        parts.append(f"{count:,} frames of the built-in range of motion (--motion-range none leaves them out)")
+    return f"Recorded are {', '.join(parts[:-1])}{' and ' if len(parts) > 1 else ''}{parts[-1]}."
+
+
+def _clips(planned: Sequence[PlannedClip]) -> str:
+    return "1 clip" if len(planned) == 1 else f"{len(planned)} clips"
+
+
 def _shares(total: int, parts: int) -> list[int]:
     """`total` as that many whole numbers, alike but for one."""
     return [total * (part + 1) // parts - total * part // parts for part in range(parts)]

@@ -8,6 +8,7 @@ from typing import Literal
 from mua.asset.tensors import Storage
 from mua.atlas.detail import Detail, UvMode
 from mua.baking.shared_options import DeviceName
+from mua.characters.facing import AS_SHOWN, Facing
 from mua.characters.figure_size import AS_FOUND, FigureSize
 from mua.motion.planted_feet import Feet
 from mua.student.settings import Settings
@@ -35,6 +36,7 @@ class BakeSettings:
     uv: UvMode = "auto"
     detail: Detail = field(default_factory=dict)  # beyond what is finer by default
     size: FigureSize = AS_FOUND
+    facing: Facing = AS_SHOWN
     storage: Storage = "f16"
     jobs: int = 1  # processes that record side by side
     teacher: Path | None = None  # that was trained on images; None: the simulated character

@@ -11,6 +11,7 @@ from mua.atlas.surfaces import Surfaces
 from mua.characters.bind_pose import Bind, bind_pose
 from mua.characters.collapsed import without_collapsed
 from mua.characters.correction import corrected
+from mua.characters.facing import AS_SHOWN, Facing
 from mua.characters.messages import UNHELD, Messages
 from mua.characters.outline import outlines
 from mua.characters.rigid_skeleton import rigid_skeleton, roles_of
@@ -41,7 +42,7 @@ class _Mesh:
     notes: tuple[str, ...]
 
 
-def assemble(scene: Scene, path: Path, *, leave_out: Sequence[str] = ()) -> Surfaces:
+def assemble(scene: Scene, path: Path, *, leave_out: Sequence[str] = (), facing: Facing = AS_SHOWN) -> Surfaces:
     """Merge a scene's parts into one welded mesh on rigid joints, upright, facing +Z and in metres.
 
     `leave_out` names meshes, nodes or materials whose triangles are no part of the character.
@@ -60,8 +61,10 @@ def assemble(scene: Scene, path: Path, *, leave_out: Sequence[str] = ()) -> Surf
     used = mesh.vertices[np.unique(mesh.faces)]
     if not np.ptp(used, axis=0).any():
         raise InputError(f"{path}: all vertices of the skinned meshes are at {used[0].tolist()}, expected a surface")
-    scene, change = corrected(scene, bind, points=used, stand=True)
-    if change.unit != 1 or change.notes:
+    scene, change = corrected(
+        scene, bind, points=used, stand=True, facing=facing, surface=_middles(mesh, len(bind.nodes))
+    )
+    if change.moved:
         bind = bind_pose(scene)
         mesh = _merge(scene, bind)
     size_notes = tuple(f"{note} {OTHER_SIZE}" for note in change.size_notes)
@@ -90,6 +93,17 @@ def assemble(scene: Scene, path: Path, *, leave_out: Sequence[str] = ()) -> Surf
         unit=change.unit,
         size_notes=size_notes,
     )
+
+
+def _middles(mesh: _Mesh, joints: int) -> Array:
+    """The middle [J, 3] of what each joint carries of a mesh, by its weights; NaN where it carries nothing."""
+    used = np.unique(mesh.faces)
+    indices, weights = mesh.indices[used].ravel(), mesh.weights[used].ravel()
+    points = np.repeat(mesh.vertices[used], mesh.indices.shape[1], axis=0)
+    mass = np.bincount(indices, weights, minlength=joints)
+    sums = np.stack([np.bincount(indices, weights * column, minlength=joints) for column in points.T], axis=-1)
+    with np.errstate(invalid="ignore"):
+        return np.asarray(sums / mass[:, None])
 
 
 def _without_outlines(scene: Scene, bind: Bind, mesh: _Mesh) -> tuple[Scene, Bind, _Mesh]:

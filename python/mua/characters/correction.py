@@ -1,12 +1,12 @@
 """A scene brought to a plausible height in metres and to facing +Z, where it does not say so itself."""
 
-import re
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from mua.arrays import Array
 from mua.characters.bind_pose import Bind
+from mua.characters.facing import AS_SHOWN, Facing, faced, mirroring, turn_about_y
 from mua.characters.figure_size import LEAST, MOST
 from mua.characters.upright import upright_rotation
 from mua.scene import Scene
@@ -17,17 +17,6 @@ UNITS = (0.01, 0.001, 100.0)  # centimetres or millimetres taken for metres, met
 ADULT = 1.75  # metres: what a figure is made whose file says nothing that is possible
 FLAT = 1e-3  # of the length: what is lower than this has no height to judge
 LYING = 0.2  # of its length: what a creature that creeps counts as high
-SIDES = (  # patterns of left in names, and what replaces them for right
-    ("left", "right"),
-    ("Left", "Right"),
-    ("LEFT", "RIGHT"),
-    ("(?<![A-Za-z])l(?![A-Za-z])", "r"),
-    ("(?<![A-Za-z])L(?![A-Za-z])", "R"),
-    ("(?<=[a-z])L(?![a-z])", "R"),  # UpperArmL
-    ("(?<![A-Za-z])L(?=[A-Z][a-z])", "R"),  # LUpperArm
-    ("(?<![A-Za-z])l(?=[A-Z][a-z])", "r"),  # lUpperArm
-)
-FACING = 0.5  # cosine between a character's front and +Z below which it is turned
 
 
 @dataclass(frozen=True)
@@ -37,6 +26,7 @@ class Correction:
     unit: float  # metres as which one metre of the file is taken
     size_notes: tuple[str, ...]
     notes: tuple[str, ...]  # all other changes
+    moved: bool  # whether anything is elsewhere than in the file
 
 
 def corrected(
@@ -45,28 +35,27 @@ def corrected(
     *,
     points: Array,  # [N, 3] what the scene shows in the bind pose, at least one
     stand: bool,  # whether a person who lies is made to stand
+    facing: Facing = AS_SHOWN,
+    surface: Array | None = None,  # [J, 3] the middle of what each joint carries, NaN where it carries nothing
 ) -> tuple[Scene, Correction]:
-    """The scene at a plausible height in metres, upright and facing +Z."""
+    """The scene at a plausible height in metres, upright and facing +Z, with the sides that the body shows."""
     correction = np.eye(4)
     notes = []
     upright = upright_rotation(scene, bind) if stand else None
     if upright is not None:
         correction[:3, :3] = upright
         points, bind = points @ upright.T, replace(bind, places=bind.places @ upright.T)
+        surface = None if surface is None else surface @ upright.T
         notes.append(
             "The character lies in its bind pose, because the file states a wrong up axis; it is turned upright."
         )
     unit, size_notes = plausible_unit(_height(points))
     correction[:3, :3] *= unit
-    turn = _quarter_turn(scene, bind)
-    if turn:
-        c, s = np.cos(turn * np.pi / 2).round(), np.sin(turn * np.pi / 2).round()
-        correction[:3, :3] = np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]]) @ correction[:3, :3]
-        notes.append(
-            f"The character's left and right joints show that it does not face +Z; it is turned by {turn * 90}°."
-        )
-    change = Correction(unit, size_notes, tuple(notes))
-    if (correction == np.eye(4)).all():
+    scene, degrees, facing_notes = faced(scene, bind, facing, surface=surface)
+    correction[:3, :3] = turn_about_y(degrees) @ correction[:3, :3]
+    notes += [*mirroring(scene, bind), *facing_notes]
+    change = Correction(unit, size_notes, tuple(notes), moved=bool((correction != np.eye(4)).any()))
+    if not change.moved:
         return scene, change
     return carried(scene, correction), change
 
@@ -104,45 +93,3 @@ def plausible_unit(
     return unit, (
         f"The character is {height:.3g} m high in its file, like no person or creature; it is scaled to {ADULT} m.",
     )
-
-
-def _quarter_turn(scene: Scene, bind: Bind) -> int:
-    """Quarter turns about +Y that make the character face +Z, by the sides that its joints have.
-
-    What the file itself says of them goes before their names.
-    """
-    across = _across_by_roles(scene, bind)
-    if not across.any():
-        across = _across_by_names(scene, bind)
-    front = np.array([-across[2], across[0]])  # x and z of left cross up
-    length = np.linalg.norm(front)
-    if length < 1e-6 or front[1] / length >= FACING:
-        return 0
-    return int(np.round(-np.arctan2(front[0], front[1]) / (np.pi / 2))) % 4
-
-
-def _across_by_roles(scene: Scene, bind: Bind) -> Array:
-    """The summed way [3] from right joints to left ones, by the roles that the file gives them."""
-    places: dict[str, Array] = {}
-    for place, node in zip(bind.places, bind.nodes, strict=True):
-        if int(node) in scene.roles:
-            places.setdefault(scene.roles[int(node)], place)
-    across = np.zeros(3)
-    for role, place in places.items():
-        side, _, part = role.partition(" ")
-        if side == "left" and f"right {part}" in places:
-            across += place - places[f"right {part}"]
-    return across
-
-
-def _across_by_names(scene: Scene, bind: Bind) -> Array:
-    """The summed way [3] from right joints to left ones, by the joints' names."""
-    names = [re.sub(r"_\d+$", "", scene.node_names[node]) for node in bind.nodes]  # some tools number them
-    index = {name: j for j, name in enumerate(names)}
-    across = np.zeros(3)
-    for name, j in index.items():
-        for left, right in SIDES:
-            other = index.get(re.sub(left, right, name))
-            if other is not None and other != j:
-                across += bind.places[j] - bind.places[other]
-    return across

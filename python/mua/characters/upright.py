@@ -5,8 +5,8 @@ import numpy as np
 from mua import rotation
 from mua.arrays import Array
 from mua.characters.bind_pose import Bind
-from mua.pose.joint_names import SIDES, roles
-from mua.pose.skeleton import Skeleton
+from mua.characters.facing import roles_in
+from mua.pose.joint_names import SIDES
 from mua.scene import Scene
 
 STRAIGHT = 45.0  # degrees between trunk and legs up to which a body is upright in itself, as no animal on four legs is
@@ -17,7 +17,7 @@ Y = np.array([0.0, 1, 0])
 
 def upright_rotation(scene: Scene, bind: Bind) -> Array | None:
     """The rotation [3, 3] that makes a lying person stand; None where nobody lies, or names do not show a person."""
-    found = _roles(scene, bind)
+    found = roles_in(scene, bind)
     if _on_four_legs(found, bind.places):
         return None
     body = [_upright(found, places) for places in (bind.places, scene.rest[bind.nodes, :3, 3])]
@@ -29,13 +29,6 @@ def upright_rotation(scene: Scene, bind: Bind) -> Array | None:
     if bound @ axis < near or rests @ axis < near:
         return None
     return rotation.to_matrix(rotation.between(axis, Y))
-
-
-def _roles(scene: Scene, bind: Bind) -> dict[str, tuple[int, ...]]:
-    names = tuple(scene.node_names[node] for node in bind.nodes)
-    still = np.tile([1.0, 0, 0, 0], (len(names), 1))
-    stated = {name: scene.roles[int(node)] for name, node in zip(names, bind.nodes, strict=True) if node in scene.roles}
-    return roles(Skeleton(names, bind.parents, still, bind.places, root=0), stated)
 
 
 def _on_four_legs(found: dict[str, tuple[int, ...]], places: Array) -> bool:

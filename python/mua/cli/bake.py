@@ -7,13 +7,15 @@ import typer
 
 from mua.baking.bake import bake as mua_bake
 from mua.baking.bake import read_settings
+from mua.characters.formats import named_characters
 from mua.cli.console import printer
 from mua.cli.failure import run_command
 from mua.cli.options import command_options, lent_by
 from mua.errors import InputError
+from mua.files.inputs import is_capture
 
 PANELS = {
-    "Character": ("scale", "height", "leave_out", "uv", "detail"),
+    "Character": ("scale", "height", "facing", "turn", "leave_out", "uv", "detail"),
     "Motion": ("mapping", "feet", "motion_range", "hold_out", "clips"),
     "Training": ("frames", "texels", "recipe", "storage", "seed", "device", "jobs", "work"),
 }
@@ -22,9 +24,13 @@ PANELS = {
 @lent_by(mua_bake, command_options(mua_bake, PANELS))
 def main(
     *,
+    more: Annotated[
+        list[Path] | None, typer.Argument(help="With --check: more characters, or directories of them.")
+    ] = None,
     check: Annotated[
         bool, typer.Option("--check", help="Train nothing; in seconds, compare splats and motion with their sources.")
     ] = False,
+    verbose: Annotated[bool, typer.Option("--verbose", help="Print lists of joints and sentences in full.")] = False,
     json: Annotated[Path | None, typer.Option(help="With --check: JSON file to write all figures to.")] = None,
     **options: Any,
 ) -> None:
@@ -33,22 +39,39 @@ def main(
     A table of errors and a contact sheet are written beside it. To resume an interrupted run, give the same command
     again.
     """
+    try:
+        _bake(options, more or [], check=check, json=json, verbose=verbose)
+    except InputError as error:
+        if verbose:
+            raise error.in_full() from error
+        raise
+
+
+def _bake(options: dict[str, Any], more: list[Path], *, check: bool, json: Path | None, verbose: bool) -> None:
     if json is not None and not check:
         raise InputError("--json: only --check writes it; expected --check too")
-    settings = read_settings(options)
+    given = [path for path in (options["character"], *more) if path is not None]
+    several = bool(more) or (check and given[:1] and given[0].is_dir() and not is_capture(given[0]))
+    if several and not check:
+        raise InputError(f"{given[1]}: one character is baked at a time; only --check takes several")
+    characters = named_characters(given) if several else []
+    settings = read_settings(options | {"character": None} if several else options)
     if check and (settings.teacher or settings.training):
         raise InputError("--check: compares a character with its file; look at a capture with mua-capture check")
     if check:
-        from mua.cli.check import check_and_show
+        from mua.cli.check import check_and_show, check_many_and_show
 
-        check_and_show(settings, json)
+        if several:
+            check_many_and_show(settings, characters, json)
+        else:
+            check_and_show(settings, json, verbose=verbose)
         return
 
     from mua.baking.pipeline import bake  # after the options are checked, because it takes seconds to load
     from mua.cli.display import Display, show
 
     console = printer()
-    with Display(console) as display:
+    with Display(console, verbose=verbose) as display:
         baked = bake(settings, display)
     show(console, baked)
 

@@ -4,6 +4,7 @@ import os
 
 from rich.console import Console
 
+MOST_NAMES, FEW_NAMES = 8, 3  # that a sentence lists in full, and that it lists of more
 WIDE = 1000  # columns; a table takes what it needs of them
 
 
@@ -13,6 +14,15 @@ def printer(*, quiet: bool = False, highlight: bool = True) -> Console:
     if not console.is_terminal and "COLUMNS" not in os.environ:
         console.width = WIDE
     return console
+
+
+def brief(sentence: str) -> str:
+    """A sentence without the rest of a long list at its end."""
+    start, colon, listed = sentence.rpartition(": ")
+    names = listed.removesuffix(".").split(", ")
+    if not colon or len(names) <= MOST_NAMES:
+        return sentence
+    return f"{start}: {', '.join(names[:FEW_NAMES])} and {len(names) - FEW_NAMES} more (--verbose lists them)."
 
 
 def say(console: Console, sentence: str) -> None:

@@ -8,7 +8,7 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, Task, TaskID, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-from mua.cli.console import say
+from mua.cli.console import brief, say
 
 if TYPE_CHECKING:  # torch takes seconds to load, and a check needs none of it
     from mua.baking.distillation import Baked
@@ -20,8 +20,8 @@ LINE_SECONDS = 30.0  # between two lines of one stage where there is no terminal
 class Display:
     """Shows the stages of a job; use it as a context manager."""
 
-    def __init__(self, console: Console) -> None:
-        self.console = console
+    def __init__(self, console: Console, *, verbose: bool = False) -> None:
+        self.console, self._verbose = console, verbose
         columns = (TextColumn("{task.description:<23}"), BarColumn(12), TextColumn("{task.fields[detail]:<26}"))
         self.progress = Progress(
             *columns, TimeElapsedColumn(), TimeRemainingColumn(), console=console, disable=not console.is_terminal
@@ -78,7 +78,7 @@ class Display:
     def _say_notes(self) -> None:
         for sentence, count in self._notes.items():
             times = f" ({count} times)" if count > 1 else ""
-            say(self.console, f"  {sentence}{times}")
+            say(self.console, f"  {sentence if self._verbose else brief(sentence)}{times}")
         self._notes.clear()
 
     def _end(self, name: str) -> None:

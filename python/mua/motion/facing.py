@@ -53,7 +53,8 @@ def _forwards(
     at: Array,  # [J, 3]
     ahead: Array,  # [3]
 ) -> int:
-    """-1 where toes point backwards: such a rig calls its left side right."""
+    """-1 where toes point backwards, or without toes away from +Z: such a rig calls its left side right."""
     pairs = [[found.get(f"{side} {part}") for part in ("foot", "toe")] for side in SIDES]
     toes = [at[toe[0]] - at[foot[0]] for foot, toe in pairs if foot and toe]
-    return -1 if len(toes) and np.sum(toes, axis=0) @ ahead < 0 else 1
+    shown = np.sum(toes, axis=0) if toes else AHEAD
+    return -1 if shown @ nearest_axis(ahead * [1, 0, 1]) < 0 else 1

@@ -1,12 +1,12 @@
-"""Which files hold motion, by their names; asked before anything is read, so that a wrong one costs no time."""
+"""Which files hold motion, by their names and first bytes; asked first, so that a wrong one costs no time."""
 
 from pathlib import Path
 
+from mua.characters.formats import ANIMATIONS, require_scene
 from mua.errors import InputError
-from mua.files.signature import refuse_foreign
+from mua.files.signature import refuse_foreign, require_kind
 
-RIG_SUFFIXES = (".glb", ".gltf", ".vrm", ".vrma", ".fbx", ".usd", ".usda", ".usdc", ".usdz", ".motion")
-SUFFIXES = (".bvh", ".npz", *RIG_SUFFIXES)
+SUFFIXES = (".bvh", ".npz", *ANIMATIONS)
 
 SAVE_NPZ = "save its poses, trans and mocap_framerate with numpy.savez, and give that .npz"
 ADVICE = {  # for other kinds of motion files
@@ -25,15 +25,24 @@ def files_of(directory: Path) -> list[Path]:
 
 
 def require_format(path: Path) -> None:
-    """Raises InputError where a path is no file of `SUFFIXES`, and no directory of them."""
+    """Raises InputError where a path is no file of `SUFFIXES` by name and first bytes, and no directory of them."""
     if path.is_dir():
         if not files_of(path):
             raise InputError(f"{path}: expected files that end in {', '.join(SUFFIXES)}, found none")
+        for file in files_of(path):
+            require_format(file)
         return
     if not path.exists():
         raise InputError(f"{path}: does not exist, expected a motion file or a directory of them")
     suffix = path.suffix.lower()
-    if suffix in SUFFIXES:
+    if suffix in ANIMATIONS:
+        require_scene(path, ANIMATIONS)
+        return
+    if suffix == ".bvh":
+        require_kind(path, "a BVH motion file", kinds=("a BVH motion file",))
+        return
+    if suffix == ".npz":
+        require_kind(path, "an AMASS archive", kinds=("a ZIP archive",))
         return
     refuse_foreign(path)
     if suffix in ADVICE:

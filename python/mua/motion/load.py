@@ -104,5 +104,5 @@ def _put_on(
         clip, notes = retarget(source, skeleton, matches, rate=rate)
         clip, held = plant_feet(source, skeleton, clip, matches, feet=feet)
     except InputError as error:
-        raise InputError(f"{path}: {error}") from error
+        raise error.of(path) from error
     return LoadedMotion(clip, source, matches, (*notes, *held))

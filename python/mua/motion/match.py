@@ -10,6 +10,7 @@ from mua.motion.joint_places import roles_by_place
 from mua.motion.whole_limbs import with_whole_limbs
 from mua.pose.joint_names import FINGERS, NAMESPACE, SIDES, Roles
 from mua.pose.joint_names import roles as find_roles
+from mua.pose.sides import SWAPPED, true_sides
 from mua.pose.skeleton import Skeleton
 
 
@@ -87,7 +88,8 @@ def _roles(
             if role in found
         )
         notes += (f"The {owner}'s {_listed(mended)} {_are(mended)} recognised by the lengths of the bones: {listed}.",)
-    return found, notes
+    sides = found if stated or poses is None else true_sides(skeleton.names, found, poses)
+    return (found, notes) if sides is found else (sides, (*notes, SWAPPED.format(owner)))
 
 
 def _are(words: tuple[str, ...]) -> str:
@@ -154,19 +156,18 @@ def missing_limbs(source: Skeleton, target: Skeleton, matches: Matches) -> tuple
 
 def require_limbs(source: Skeleton, target: Skeleton, matches: Matches) -> None:
     """Errors: InputError that names the limbs of the character that nothing of the motion moves."""
-    if not set(matches.chains) - set(matches.roles["hips"]) and _plain(source) != _plain(target):
-        raise InputError(
-            f"motion: no joint name of the source ({_sample(source)}) matches one of the character "
-            f"({_sample(target)}); pair their joints in a mapping file and give it with --mapping "
-            "(mua-bake --check writes one to start from)"
-        )
     missing = missing_limbs(source, target, matches)
-    if missing:
-        raise InputError(
-            f"motion: nothing of the source ({_sample(source)}) is known to move the {_listed(missing)} of the "
-            f"character ({_sample(target)}); pair their joints in a mapping file and give it with --mapping "
-            "(mua-bake --check writes one to start from)"
-        )
+    if not set(matches.chains) - set(matches.roles["hips"]) and _plain(source) != _plain(target):
+        problem = "no joint name of it matches one of the character"
+    elif missing:
+        problem = f"nothing of it is known to move the {_listed(missing)} of the character"
+    else:
+        return
+    raise InputError(
+        f"motion: {problem}; pair their joints in a mapping file and give it with --mapping "
+        "(mua-bake --check writes one to start from, --verbose lists the joints)",
+        f"joints of the motion: {', '.join(source.names)}\njoints of the character: {', '.join(target.names)}",
+    )
 
 
 def _asked(skeleton: Skeleton, found: Roles, limb: tuple[str, ...]) -> tuple[str, ...]:

@@ -67,29 +67,35 @@ class Pair:
     source: Side
     rate: float
     turned: Mapping[str, Array]  # [F, 4] what the clip does since bind to the last joint of the target's hips and spine
+    head: Array | None  # [F, 4] the same of the target's head, None where nothing moves it
+    source_head: Array | None  # [F, 4] what the motion does to the head since its rest pose
 
     @classmethod
     def of(cls, source: SourceMotion, target: Skeleton, clip: Clip, matches: Matches) -> "Pair":
         original = resample(source.clip, clip.rate)
         frames = min(len(clip), len(original))
         turned, at = target.world(clip.rotations[:frames], clip.translations[:frames])
-        _, source_at = source.skeleton.world(original.rotations[:frames], original.translations[:frames])
+        source_turned, source_at = source.skeleton.world(original.rotations[:frames], original.translations[:frames])
         bind_turned, bind_at = _bind(target)
         ends = {role: pair for role in matches.roles if (pair := matches.ends(role)) is not None}
         last = {role: joints[-1] for role in ("hips", "spine") if (joints := matches.roles.get(role))}
-        source_bind = _bind(source.skeleton)[1]
+        source_bind_turned, source_bind = _bind(source.skeleton)
+        head, source_head = ends.get("head", (None, None))
         sources = {role: joint for role, (_, joint) in ends.items()}
         source_rest = {role: source_bind[joint] for role, joint in sources.items()}
         return cls(
             Side(at, bind_at, {role: joint for role, (joint, _) in ends.items()}, trusted=True),
             Side(source_at, source_bind, sources, trusted=stands(source_rest) or on_all_fours(source_rest)),
             clip.rate,
-            {
-                role: rotation.multiply(turned[:, joint], rotation.conjugate(bind_turned[joint]))
-                for role, joint in last.items()
-                if joint in matches.chains
-            },
+            {role: _since(turned, bind_turned, joint) for role, joint in last.items() if joint in matches.chains},
+            None if head is None else _since(turned, bind_turned, head),
+            None if source_head is None else _since(source_turned, source_bind_turned, source_head),
         )
+
+
+def _since(turned: Array, bind: Array, joint: int) -> Array:
+    """What a joint has turned [F, 4] since the bind pose."""
+    return rotation.multiply(turned[:, joint], rotation.conjugate(bind[joint]))
 
 
 def _bind(skeleton: Skeleton) -> tuple[Array, Array]:

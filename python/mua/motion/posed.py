@@ -6,7 +6,8 @@ the joints' places in the world say holds for all of them, because a bone keeps 
 - trunk: up is the way from hips to shoulders while the body is most upright, left runs through hips and shoulders;
 - limbs: along the bone, and about the axis on which elbow or knee bends;
 - feet: a standing sole is level;
-- all else (neck, head, collar bones, hands): on average as in the bind pose, relative to the part above.
+- the head is level on average, and the neck between it and the trunk;
+- all else (collar bones, hands): on average as in the bind pose, relative to the part above.
 """
 
 from dataclasses import dataclass
@@ -18,6 +19,7 @@ from mua.arrays import Array
 from mua.motion.contacts import planted
 from mua.motion.rest import IDENTITY, Rest, Y
 from mua.motion.trunk import AROUND, AT_EASE, Trunk, degrees, leaned, nearest_axis, trunk_of, unit
+from mua.pose.descriptor import heading_of
 from mua.pose.joint_names import FINGERS, ROLES
 
 UPRIGHT = 0.75  # quantile of uprightness from which a frame shows how the trunk is at ease
@@ -25,7 +27,8 @@ PRIOR = 0.1  # weight of the axis that a straight limb would bend about, against
 UPPER = {"upper_arm": "forearm", "thigh": "shin"}
 LOWER = {"forearm": ("upper_arm", "hand"), "shin": ("thigh", "foot")}
 LEVEL = 35.0  # degrees: a sole that stands farther from what its bones say stands on something other than the floor
-NODDED = 45.0  # degrees: a bone of the head farther from upright than a head is held is no measure of it
+NODDED = 25.0  # degrees: a bone of the head farther from upright than a head is held is no measure of it
+LYING = 60.0  # degrees from upright from which a body holds its head anyhow
 _CARRIERS = {"hand": "forearm", "foot": "shin"}  # for rigs whose hands and feet hang on nothing but controls
 _OUTWARDS = {role: i for i, role in enumerate(ROLES)}
 
@@ -96,6 +99,8 @@ def _calibration(frames: _Frames, joint: int, role: str, found: dict[int, Array]
         turn = _lower_calibration(frames, joint, side, part, found)
     elif part == "foot":
         turn = _foot_calibration(frames, joint, side, found)
+    elif role == "neck":
+        turn = _neck_calibration(frames, joint, found)
     elif role == "head":
         turn = _head_calibration(frames, joint, found)
     elif part in FINGERS:
@@ -171,14 +176,35 @@ def _foot_calibration(frames: _Frames, joint: int, side: str, found: dict[int, A
 
 
 def _head_calibration(frames: _Frames, joint: int, found: dict[int, Array]) -> Array:
-    """Calibration of the head as on average relative to the neck, but upright where a bone shows the skull."""
-    base = _calibration_as_above(frames, joint, found)
+    """Calibration of the head as level and straight ahead on average, or as a bone shows the skull.
+
+    Frames in which the body is most upright do not show how a head is held: a dancer looks down in them.
+    """
+    base = _level(frames, joint, found)
     ends = np.flatnonzero(frames.rest.source.parents == frames.rest.matches.chains[joint][1])
     if len(ends) != 1:
         return base
     top = unit(frames.rest.source.bind_translations[ends[0]])
     stands = top.any() and degrees(top, rotation.rotate(base, frames.bind.up)) < NODDED
     return _laid(base, frames.bind.up, top) if stands else base
+
+
+def _neck_calibration(frames: _Frames, joint: int, found: dict[int, Array]) -> Array:
+    """Calibration of a neck between what it hangs on and the head."""
+    above, level = _calibration_as_above(frames, joint, found), _level(frames, joint, found)
+    chain = frames.rest.matches.roles["neck"]
+    share = (chain.index(joint) + 1) / (len(chain) + 1)
+    level = level if above @ level > 0 else -level
+    return rotation.normalize((1 - share) * above + share * level)
+
+
+def _level(frames: _Frames, joint: int, found: dict[int, Array]) -> Array:
+    """Calibration as level and as the part above is turned about the vertical, on average while nobody lies."""
+    standing = frames.trunk.up[:, 1] > np.cos(np.radians(LYING))
+    if not standing.any():
+        return _calibration_as_above(frames, joint, found)
+    own = rotation.conjugate(frames.moving(joint))
+    return _mean(rotation.multiply(own, heading_of(_world(frames, joint, found)))[standing])
 
 
 def _finger_calibration(frames: _Frames, joint: int, role: str, found: dict[int, Array]) -> Array | None:

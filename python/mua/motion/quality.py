@@ -8,9 +8,11 @@ import numpy as np
 from mua import rotation
 from mua.arrays import Array
 from mua.motion.contacts import floor_of, planted, speed, standing
+from mua.motion.head_and_hands import hand_angles, hand_flaws, head_flaws, head_pitch
 from mua.motion.match import Matches
 from mua.motion.pair import Pair, Side
 from mua.motion.reach import WRONG, Figure, Reach, best_heading, reaches
+from mua.motion.rest import IDENTITY
 from mua.motion.source import SourceMotion
 from mua.motion.trunk import SIDES, degrees, trunk_of, unit
 from mua.pose.clip import Clip
@@ -44,6 +46,8 @@ class MotionQuality:
     feet_height: float | None  # metres of the lower foot above where it stands in the bind pose, None without feet
     slide: float | None  # metres per second of the target's feet while the source's stand, None where none stands
     limbs: Mapping[str, float]  # median degrees by limb
+    head_degrees: float | None  # how far up the head looks while the body is upright, median; None where unknown
+    hands: Mapping[str, float]  # median degrees by hand between where palm and fingers point on source and target
     reach: tuple[Reach, ...]  # how far hands and feet are from where the motion has them
     flaws: tuple[str, ...]  # a sentence for everything that looks wrong
 
@@ -52,11 +56,18 @@ class MotionQuality:
         """The largest distance of a hand or foot, as a share of its limb; None where no limb is known on both sides."""
         return max((limb.share for limb in self.reach), default=None)
 
+    @property
+    def worst_hand(self) -> float | None:
+        """Degrees of the hand that is turned farther; None where the fingers of both sides do not show it."""
+        return max(self.hands.values(), default=None)
+
 
 def measure_motion(source: SourceMotion, target: Skeleton, clip: Clip, matches: Matches) -> MotionQuality:
     """Compare `clip` on `target` with the `source` that it was made from."""
     pair = Pair.of(source, target, clip, matches)
-    limbs = _limb_angles(pair)
+    heading = _heading(pair)
+    limbs, hands = _limb_angles(pair, heading), hand_angles(pair, heading)
+    pitch, source_pitch = head_pitch(pair)
     facing = _facing(pair)
     height = _feet_height(pair.target)
     slide, source_slide = _slide(pair)
@@ -70,10 +81,14 @@ def measure_motion(source: SourceMotion, target: Skeleton, clip: Clip, matches: 
         feet_height=height,
         slide=slide,
         limbs=limbs,
+        head_degrees=pitch,
+        hands=hands,
         reach=reach,
         flaws=(
             *_limb_flaws(clip.name, limbs),
             *_reach_flaws(clip.name, reach),
+            *head_flaws(clip.name, pitch, source_pitch),
+            *hand_flaws(clip.name, hands),
             *_facing_flaws(clip.name, facing),
             *_floor_flaws(clip.name, height, pair.target.leg),
             *_slide_flaws(clip.name, slide, source_slide, pair.target.leg),
@@ -81,14 +96,23 @@ def measure_motion(source: SourceMotion, target: Skeleton, clip: Clip, matches: 
     )
 
 
-def _limb_angles(pair: Pair) -> dict[str, float]:
-    """Median angle in degrees by limb, after the one turn about Y that brings the source nearest to the target."""
+def _heading(pair: Pair) -> Array:
+    """The one turn about Y [4] that brings the limbs of the source nearest to those of the target."""
     target, source = _directions(pair.target), _directions(pair.source)
     shared = [limb for limb in target if limb in source]
     if not shared:
-        return {}
-    heading = best_heading(*(np.concatenate([side[limb] for limb in shared]) for side in (target, source)))
-    return {limb: float(np.median(degrees(target[limb], rotation.rotate(heading, source[limb])))) for limb in shared}
+        return IDENTITY
+    return best_heading(*(np.concatenate([side[limb] for limb in shared]) for side in (target, source)))
+
+
+def _limb_angles(pair: Pair, heading: Array) -> dict[str, float]:
+    """Median angle in degrees by limb, with the source turned by `heading` [4]."""
+    target, source = _directions(pair.target), _directions(pair.source)
+    return {
+        limb: float(np.median(degrees(target[limb], rotation.rotate(heading, source[limb]))))
+        for limb in target
+        if limb in source
+    }
 
 
 def _directions(side: Side) -> dict[str, Array]:

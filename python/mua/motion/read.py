@@ -3,7 +3,6 @@
 from pathlib import Path
 
 from mua.errors import InputError
-from mua.files.signature import require_kind
 from mua.motion.amass import read_amass
 from mua.motion.bvh import read_bvh
 from mua.motion.formats import files_of, require_format
@@ -21,10 +20,8 @@ def read_motion(path: Path) -> list[SourceMotion]:
         return [motion for file in files_of(path) for motion in read_motion(file)]
     suffix = path.suffix.lower()
     if suffix == ".bvh":
-        require_kind(path, "a BVH motion file", kinds=("a BVH motion file",))
         return [read_bvh(path)]
     if suffix == ".npz":
-        require_kind(path, "an AMASS archive", kinds=("a ZIP archive",))
         return [read_poses(path) if holds_poses(path) else read_amass(path)]
     return _read_rig_clips(path)
 

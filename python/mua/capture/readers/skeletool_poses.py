@@ -6,7 +6,7 @@ from pathlib import Path
 
 from mua.capture.capture import Capture, CaptureClip
 from mua.characters.animation import Animation
-from mua.characters.read import SKELETOOL, SKELETOOL_MOTION
+from mua.characters.formats import SKELETOOL, SKELETOOL_MOTION
 from mua.characters.skeletool.motion import first_frame
 from mua.characters.skeletool.read import read_skeletool_motion
 from mua.errors import InputError

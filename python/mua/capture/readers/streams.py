@@ -19,7 +19,7 @@ from mua.capture.readers.avatarrex import below
 from mua.capture.readers.calibration_files import read_calibration
 from mua.capture.readers.skeletool_poses import find_character, find_poses, with_poses
 from mua.capture.video import VIDEOS, count_frames, video_frame, video_rate
-from mua.characters.read import SKELETOOL
+from mua.characters.formats import SKELETOOL
 from mua.errors import InputError
 
 STREAMS, MASKS, MESHES = "stream*", "foregroundSegmentation", "recon_neus2"

@@ -6,10 +6,11 @@ from pathlib import Path
 from mua.atlas.surfaces import Surfaces
 from mua.characters.animation import Animation, whole_animation
 from mua.characters.assemble import assemble
+from mua.characters.facing import AS_SHOWN, Facing
 from mua.characters.fbx.process import scenes_of
 
 
-def read_fbx(path: Path, *, leave_out: Sequence[str] = ()) -> Surfaces:
+def read_fbx(path: Path, *, leave_out: Sequence[str] = (), facing: Facing = AS_SHOWN) -> Surfaces:
     """Read all skinned meshes of a file, with what hangs rigidly on their joints, and its animation stacks as clips.
 
     Where nothing is skinned, meshes on animated nodes are taken, each rigid on its node. `leave_out` names meshes,
@@ -17,7 +18,7 @@ def read_fbx(path: Path, *, leave_out: Sequence[str] = ()) -> Surfaces:
     Raises an InputError where the file is broken or holds no mesh on a skeleton.
     """
     (scene,) = scenes_of(path, "skinned")
-    return assemble(scene, path, leave_out=leave_out)
+    return assemble(scene, path, leave_out=leave_out, facing=facing)
 
 
 def read_fbx_animation(path: Path) -> Animation:

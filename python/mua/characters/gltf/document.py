@@ -26,6 +26,7 @@ READ_EXTENSIONS = {
     "KHR_mesh_quantization",
     "KHR_texture_transform",
     "EXT_texture_webp",
+    "KHR_texture_basisu",
     *MESHOPT,
     "KHR_draco_mesh_compression",
     "KHR_node_visibility",
@@ -34,8 +35,6 @@ READ_EXTENSIONS = {
 # Extensions that change nothing which a base-colour texture or a skeleton could show.
 HARMLESS_EXTENSIONS = ("KHR_materials_", "KHR_lights_", "KHR_xmp", "EXT_lights_", "VRMC_", "KHR_animation_pointer")
 ADVICE = {
-    "KHR_texture_basisu": "its pictures are KTX2; export it with PNG or JPEG pictures, or convert it by "
-    "'npx @gltf-transform/cli ktxdecompress IN.glb OUT.glb'",
     "EXT_texture_avif": "its pictures are AVIF; export it with PNG or JPEG pictures",
     "EXT_mesh_gpu_instancing": "export it with its instances as nodes of their own",
 }

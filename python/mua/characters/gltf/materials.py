@@ -8,6 +8,7 @@ import numpy as np
 from mua.arrays import Array
 from mua.atlas import pictures
 from mua.characters.gltf.document import Document
+from mua.characters.gltf.ktx2 import decode_ktx2, is_ktx2
 from mua.characters.gltf.vrm import is_toon
 from mua.characters.messages import Messages
 from mua.scene import AlphaMode, Material, Wrap
@@ -153,11 +154,8 @@ def _base_color(material: Any) -> tuple[Any, dict[str, Any] | None]:
 def _picture(document: Document, info: dict[str, Any], where: str) -> tuple[Array, tuple[Wrap, Wrap]]:
     texture = document.item("textures", info.get("index"), field=f"{where}.index")
     source = (texture.extensions or {}).get(WEBP, {}).get("source", texture.source)
-    if source is None and BASIS in (texture.extensions or {}):
-        raise document.error(
-            f"textures[{info['index']}] is a KTX2 picture ({BASIS}), which is not read; export it with PNG or JPEG, or "
-            "convert it by 'npx @gltf-transform/cli ktxdecompress IN.glb OUT.glb'"
-        )
+    if source is None:  # a PNG beside it shows more
+        source = (texture.extensions or {}).get(BASIS, {}).get("source")
     image = document.item("images", source, field=f"textures[{info['index']}].source")
     field = f"images[{source}]"
     if image.bufferView is not None:
@@ -167,9 +165,9 @@ def _picture(document: Document, info: dict[str, Any], where: str) -> tuple[Arra
     else:
         raise document.error(f"{field} has neither uri nor bufferView")
     try:
-        picture = pictures.decode_image(content)
+        picture = decode_ktx2(content) if is_ktx2(content) else pictures.decode_image(content)
     except ValueError as broken:
-        raise document.error(f"{field} is not a PNG, JPEG or WebP that can be decoded: {broken}") from broken
+        raise document.error(f"{field} is not a PNG, JPEG, WebP or KTX2 that can be decoded: {broken}") from broken
     if texture.sampler is None:
         return picture, REPEAT
     sampler = document.item("samplers", texture.sampler, field=f"textures[{info['index']}].sampler")

@@ -11,6 +11,7 @@ import numpy as np
 from mua.atlas.surfaces import Surfaces
 from mua.characters.animation import Animation, whole_animation
 from mua.characters.assemble import assemble
+from mua.characters.facing import AS_SHOWN, Facing
 from mua.characters.gltf.animation import moved_nodes, read_animations
 from mua.characters.gltf.document import Document, load
 from mua.characters.gltf.materials import read_materials
@@ -26,7 +27,7 @@ INSTANCES = "EXT_mesh_gpu_instancing"
 UNWEIGHTED = "Primitives without skin weights, which no joint moves, are left out, of meshes: {}."
 
 
-def read_gltf(path: Path, *, leave_out: Sequence[str] = ()) -> Surfaces:
+def read_gltf(path: Path, *, leave_out: Sequence[str] = (), facing: Facing = AS_SHOWN) -> Surfaces:
     """Read all skinned meshes of a .glb, .gltf or .vrm, with what hangs rigidly on their joints, and its clips.
 
     Where nothing is skinned, meshes on animated nodes are taken, each rigid on its node. `leave_out` names meshes,
@@ -35,7 +36,7 @@ def read_gltf(path: Path, *, leave_out: Sequence[str] = ()) -> Surfaces:
     holds no mesh on a skeleton.
     """
     document = load(path)
-    return assemble(_meshes(document, read_tree(document)), path, leave_out=leave_out)
+    return assemble(_meshes(document, read_tree(document)), path, leave_out=leave_out, facing=facing)
 
 
 def read_gltf_animation(path: Path) -> Animation:

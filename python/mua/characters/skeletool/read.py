@@ -14,6 +14,7 @@ from mua.arrays import Array
 from mua.atlas.surfaces import Surfaces
 from mua.characters.animation import Animation
 from mua.characters.assemble import assemble
+from mua.characters.facing import AS_SHOWN, Facing
 from mua.characters.rigid_motion import local_offsets, local_rotations
 from mua.characters.skeletool.character import character_of, read_character_files
 from mua.characters.skeletool.mesh import Mesh, read_mesh
@@ -26,7 +27,7 @@ from mua.scene import Part, Scene, Skin, upwards
 RATE = 25.0  # frames per second of the family's cameras; no file says it
 
 
-def read_skeletool(path: Path, *, leave_out: Sequence[str] = ()) -> Surfaces:
+def read_skeletool(path: Path, *, leave_out: Sequence[str] = (), facing: Facing = AS_SHOWN) -> Surfaces:
     """Read a .character and the files that it names, in metres; `leave_out` names materials that are no part of it.
 
     Raises an InputError that names file and line where one of them is not as it should be.
@@ -35,7 +36,7 @@ def read_skeletool(path: Path, *, leave_out: Sequence[str] = ()) -> Surfaces:
     skeleton, mesh = read_skeleton(files.skeleton), read_mesh(files.mesh)
     skin = read_skin(files.skin, skeleton, len(mesh.positions))
     rest = skeleton.world(read_dofs(files.pose, skeleton.dofs)[1][:1])
-    return assemble(_scene(path.stem, skeleton, skin, mesh, rest), path, leave_out=leave_out)
+    return assemble(_scene(path.stem, skeleton, skin, mesh, rest), path, leave_out=leave_out, facing=facing)
 
 
 def read_skeletool_motion(path: Path, *, character: Path | None = None, rate: float = RATE) -> Animation:
