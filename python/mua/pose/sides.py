@@ -6,7 +6,7 @@ direction that the names have for ahead: left x up.
 """
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,7 +22,7 @@ STRAY = 0.1  # of a figure's size: how far eyes are ahead or a tail is behind
 CERTAIN = 2.0  # evidence of a motion alone, whose rest pose may show anything, that overrules the names
 MOST = 3.0  # that one kind of evidence counts
 NARROW = 0.02  # of a trunk's length: joints of a pair that are nearer than this show no sides
-LEVEL = 0.5  # cosine from upright below which a trunk is that of an animal, or of somebody who crawls
+LEVEL = 0.5  # cosine from upright: a trunk below it and legs above it are those of an animal, or of somebody who crawls
 AHEAD = re.compile(r"eye(?!lash)|nose|jaw|mouth|snout|beak|tongue", re.IGNORECASE)
 BEHIND = re.compile(r"tail(?!or)", re.IGNORECASE)
 Y = np.array([0.0, 1, 0])
@@ -112,7 +112,7 @@ class _Body:
             return None
         across = _unit(np.sum(wide, axis=0))
         up = _unit(top - hips)
-        level = bool(abs(np.median(up[..., 1])) < LEVEL)
+        level = bool(abs(np.median(up[..., 1])) < LEVEL) and _hang(at)
         return cls(at, hips, top, _unit(np.cross(across, Y if level else up)), level)
 
     def bend(self, begin: str, middle: str, end: str) -> float | None:
@@ -128,6 +128,13 @@ class _Body:
             length = np.linalg.norm(bent - first, axis=-1) + np.linalg.norm(last - bent, axis=-1)
             shares.append(float(np.mean(np.sum(out * self.ahead, axis=-1) / np.where(length > 0, length, 1))))
         return float(np.mean(shares)) if shares else None
+
+
+def _hang(at: Mapping[str, Array]) -> bool:
+    """Whether legs point down, as those of an animal do; those of a person who lies go on where the trunk ends."""
+    pairs = [(at.get(f"{side} thigh"), at.get(f"{side} foot")) for side in SIDES]
+    legs = [_unit(foot - thigh) for thigh, foot in pairs if thigh is not None and foot is not None]
+    return not legs or bool(np.median(legs, axis=0)[..., 1].mean() < -LEVEL)
 
 
 def _feet(figure: Figure, body: _Body) -> float:
