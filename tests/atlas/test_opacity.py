@@ -123,7 +123,7 @@ def test_triangles_stay_that_interpolation_gives_a_share_of_a_solid_texel(texel:
 @pytest.mark.parametrize("mode", ["mask", "blend"])
 def test_a_cut_out_keeps_its_outline_and_takes_no_colour_from_what_is_clear(size: int, mode: AlphaMode) -> None:
     surfaces = card(disc(size, soft=4 if mode == "mask" else 1), mode, cells=1)
-    character = build_atlas(surfaces, uv="auto", size=128)
+    character = build_atlas(surfaces, uv="auto", size=160)
     texels, colours = texels_and_colours(character)
     on_card = points(character, texels)[:, 0] < 1.5
     alpha = colours[on_card, 3] / 255

@@ -38,7 +38,7 @@ def test_auto_moves_charts_that_share_texels_apart_and_carries_the_colours_over(
     character = build_atlas(surfaces, uv="auto", size=96)
     texels, colours = texels_and_colours(character)
     assert texels.claimed_twice == 0
-    assert character.notes[-1] == "2 charts of the file's UV layout are kept, at one density of texels."
+    assert character.notes[-1] == "2 charts of the file's UV layout are kept, finer where more is seen."
     place = points(character, texels)
     across = place[:, 0] - np.where(place[:, 0] > 1.5, 2, 0)
     u = np.where((place[:, 0] > 1.5) & mirrored, 0.9 - 0.8 * across, 0.1 + 0.8 * across)
@@ -55,7 +55,7 @@ def test_auto_halves_that_meet_at_a_fold_become_two_charts() -> None:
     surfaces = replace(surfaces, vertices=welded, faces=index[surfaces.faces].astype(np.int32))
     character = build_atlas(surfaces, uv="auto", size=64)
     assert build_texel_map(character.mesh, 64).claimed_twice == 0
-    assert character.notes[-1] == "2 charts of the file's UV layout are kept, at one density of texels."
+    assert character.notes[-1] == "2 charts of the file's UV layout are kept, finer where more is seen."
 
 
 @pytest.mark.parametrize("uv", ["auto", "keep"])
@@ -146,7 +146,7 @@ def test_a_chart_that_winds_over_itself_is_cut_anew_and_others_are_kept() -> Non
     aside = patch(2, at=5, uv=uv_map(0.3, 0.3, at=(0.7, 0.7)))
     character = build_atlas(surfaces_of((vertices, faces, uv), aside, images=(ramp(16),)), uv="auto", size=128)
     assert build_texel_map(character.mesh, 128).claimed_twice == 0
-    assert "1 charts of the file's UV layout are kept, at one density of texels; 60 of 68" in character.notes[-1]
+    assert "1 charts of the file's UV layout are kept, finer where more is seen; 60 of 68" in character.notes[-1]
 
 
 def test_keep_says_what_it_leaves() -> None:

@@ -12,8 +12,8 @@ from mua.rig.body_parts import BODY_PARTS, BodyPart
 UvMode: TypeAlias = Literal["keep", "unwrap", "auto"]  # what becomes of the UVs of a file
 Detail = Mapping[BodyPart, float]  # texels along a metre, over those of a part that is not named
 
-BY_DEFAULT: Detail = {"head": 2.0, "hands": 1.5}
-LARGEST_SHARES: Detail = {"head": 0.4, "hands": 0.15}  # of all texels: a big head, or what a hand holds, is seen as is
+BY_DEFAULT: Detail = {"head": 2.3, "hands": 1.5}
+LARGEST_SHARES: Detail = {"head": 0.45, "hands": 0.15}  # of all texels: a big head, or what a hand holds, is seen as is
 FINEST = 8.0  # and the coarsest is 1 / FINEST
 PIECE = 0.003  # of the surface: a smaller piece of a chart is not worth a border of its own
 

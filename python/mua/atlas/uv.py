@@ -1,4 +1,4 @@
-"""One texture space for all materials of a character: artists' charts kept, brought to one density or cut anew."""
+"""One texture space for all materials of a character: artists' charts, scaled by what is seen of them, or cut anew."""
 
 from dataclasses import dataclass
 
@@ -6,11 +6,13 @@ import numpy as np
 import xatlas
 
 from mua.arrays import Array
+from mua.atlas.allocation import wanted_fineness
 from mua.atlas.bake_texture import bake_texture
 from mua.atlas.chart_quality import distorted, even, overlapping, starved
 from mua.atlas.detail import Detail, UvMode, factors, split_by_factor
 from mua.atlas.opacity import without_unseen
 from mua.atlas.packing import pack
+from mua.atlas.redraw import redrawn
 from mua.atlas.surfaces import Surfaces
 from mua.rig.body_parts import body_parts
 from mua.rig.character import Character, Mesh
@@ -47,9 +49,9 @@ class _Layout:
 def build_atlas(surfaces: Surfaces, *, uv: UvMode, size: int, detail: Detail | None = None) -> Character:
     """Give a character one UV layout and one image for all its materials.
 
-    `auto` brings the artist's charts to one density of texels, finer where `detail` says so, packs them, and cuts anew
-    only what overlaps itself, is distorted or is starved of texels; `unwrap` cuts everything anew with xatlas; `keep`
-    leaves every chart where its artist put it, several materials side by side as whole squares.
+    `auto` scales the artist's charts by what is seen of them and by `detail`, packs them, and cuts anew only what
+    overlaps itself, is distorted or is starved of texels; `unwrap` cuts everything anew with xatlas; `keep` leaves
+    every chart where its artist put it, several materials side by side as whole squares.
 
     The image is `size` x `size`, or the only material's own where that is square and its layout is kept.
     """
@@ -134,7 +136,8 @@ def _lay_out(
     finer, absent = factors(parts, surface, detail)
     cut, kept = len(np.unique(charts[anew])), len(np.unique(charts[~anew]))
     charts, finer = split_by_factor(nodes, corners, charts=charts, surface=surface, finer=finer)
-    flat = even(corners, source.positions, charts) * finer[:, None, None]
+    finer *= wanted_fineness(surfaces, source.corners, parts=parts)
+    flat = redrawn(even(corners, source.positions, charts), charts, finer)
     return _Layout(pack(flat, charts), as_is=False, notes=(_note(anew, kept=kept, cut=cut), *absent))
 
 
@@ -147,7 +150,7 @@ def _note(
     """A sentence on what was done to the file's charts."""
     if not kept:
         return f"All {len(anew):,} triangles are cut into {cut} new UV charts."
-    note = f"{kept} charts of the file's UV layout are kept, at one density of texels"
+    note = f"{kept} charts of the file's UV layout are kept, finer where more is seen"
     if not cut:
         return f"{note}."
     useless = f"{np.count_nonzero(anew):,} of {len(anew):,} triangles overlap, are distorted or have next to no texels"

@@ -58,7 +58,8 @@ def neighbour_steps(
     mesh, places = points.mesh, points.places
     chart = charts_of(mesh)[points.triangles]
     raw = np.linalg.norm(own, axis=2)
-    lengths = np.minimum(raw, COARSEST * np.median(raw)) if len(raw) else raw
+    longest = COARSEST * _usual(raw, chart)
+    lengths = np.minimum(raw, longest[:, None])
     found, farthest = np.zeros_like(own), np.zeros(lengths.shape)
     for axis, (a, b) in enumerate(neighbours(points.texels, points.size)):
         step = places[b] - places[a]
@@ -72,9 +73,30 @@ def neighbour_steps(
         own * (np.minimum(lengths, width) / np.maximum(np.linalg.norm(own, axis=2), np.finfo(float).tiny))[..., None]
     )
     steps = np.where(farthest[:, :, None] > 0, found, alone)
-    long = np.linalg.norm(steps, axis=2, keepdims=True)
-    longest = COARSEST * np.median(long) if len(long) else 1.0
-    return steps * np.minimum(1, longest / np.maximum(long, np.finfo(float).tiny))
+    long = np.linalg.norm(steps, axis=2)
+    longest = COARSEST * _usual(long, chart)
+    return steps * np.minimum(1, longest[:, None] / np.maximum(long, np.finfo(float).tiny))[..., None]
+
+
+def _usual(
+    steps: Array,  # [N, 2] lengths of the steps of each texel along u and v
+    chart: Array,  # [N]
+) -> Array:
+    """The step [N] that half of each texel's chart, by surface, does not exceed, nor half of the whole surface."""
+    surface = np.maximum(steps[:, 0] * steps[:, 1], np.finfo(float).tiny)
+    step = np.sqrt(surface)
+    if not len(step):
+        return step
+    order = np.argsort(step)
+    below = np.cumsum(surface[order])
+    of_all = step[order][np.searchsorted(below, below[-1] / 2)]
+    order = np.lexsort((step, chart))
+    ends = np.searchsorted(chart[order], np.arange(chart.max(initial=-1) + 1), side="right")
+    below = np.cumsum(surface[order])
+    before = np.concatenate([[0], below[ends - 1]])
+    middle = np.searchsorted(below, (before[:-1] + before[1:]) / 2)
+    of_chart = step[order][np.minimum(middle, len(step) - 1)][chart]
+    return np.minimum(of_chart, of_all)
 
 
 def sample_surface(

@@ -1,0 +1,74 @@
+"""Texels go where they are seen: to what has detail, to what is in sight, and to the middle of a face."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from patches import patch, plain, surfaces_of, uv_map
+from people import upright
+
+from mua.arrays import Array
+from mua.atlas.surfaces import Surfaces
+from mua.atlas.uv import build_atlas
+from mua.rig.texel_map import build_texel_map
+
+SIZE = 256
+WHOLE = uv_map(1, 1, at=(0, 0))
+NOISE = np.random.default_rng(0).integers(0, 256, (64, 64, 4), dtype=np.uint8) | np.array([0, 0, 0, 255], np.uint8)
+
+
+def texels_of(surfaces: Surfaces, chosen: Array) -> int:
+    """Texels on the triangles [F] that are chosen."""
+    mesh = build_atlas(surfaces, uv="auto", size=64).mesh
+    texels = build_texel_map(mesh, SIZE)
+    assert texels.claimed_twice == 0
+    return int(np.count_nonzero(chosen[texels.triangles]))
+
+
+def middles(surfaces: Surfaces) -> Array:
+    return np.asarray(surfaces.vertices[surfaces.faces].mean(axis=1))
+
+
+def test_a_chart_with_detail_gets_more_texels_than_one_of_a_single_colour() -> None:
+    surfaces = surfaces_of(patch(8, at=0, uv=WHOLE), patch(8, at=2, uv=WHOLE), images=(NOISE, plain(90, 90, 90, 255)))
+    busy = middles(surfaces)[:, 0] < 1.5
+    assert texels_of(surfaces, busy) > 1.5 * texels_of(surfaces, ~busy)
+
+
+def test_charts_of_the_same_detail_get_as_many_texels() -> None:
+    surfaces = surfaces_of(patch(8, at=0, uv=WHOLE), patch(8, at=2, uv=WHOLE), images=(NOISE, NOISE))
+    first = middles(surfaces)[:, 0] < 1.5
+    assert texels_of(surfaces, first) == pytest.approx(texels_of(surfaces, ~first), rel=0.1)
+
+
+def test_one_chart_is_finer_where_its_texture_has_detail() -> None:
+    image = np.full((64, 64, 4), 128, np.uint8)
+    image[:, :32], image[..., 3] = NOISE[:, :32], 255
+    surfaces = surfaces_of(patch(16, at=0, uv=WHOLE), images=(image,))
+    busy = middles(surfaces)[:, 0] < 0.5
+    assert texels_of(surfaces, busy) > 1.3 * texels_of(surfaces, ~busy)
+
+
+def test_what_others_hide_gets_fewer_texels() -> None:
+    surfaces = surfaces_of(*(patch(8, at=0, uv=WHOLE) for _ in range(5)), images=(NOISE,) * 5)
+    depth = np.repeat([-0.02, -0.01, 0, 0.01, 0.02], len(surfaces.vertices) // 5)
+    surfaces = replace(surfaces, vertices=surfaces.vertices + depth[:, None] * [0, 0, 5])
+    inner = np.abs(middles(surfaces)[:, 2]) < 0.01
+    outer = middles(surfaces)[:, 2] > 0.09
+    assert texels_of(surfaces, inner) < 0.8 * texels_of(surfaces, outer)
+
+
+def test_the_eyes_of_a_face_get_more_texels_than_its_skin() -> None:
+    image = np.full((96, 96, 4), (190, 140, 120, 255), np.uint8)
+    for column in (30, 58):
+        image[40:50, column : column + 10] = NOISE[:10, :10]
+    face = surfaces_of(patch(40, at=-0.1, uv=WHOLE, width=0.2), images=(image,))
+    face = replace(
+        face,
+        skeleton=upright(("Hips", "Head"), (-1, 0)),
+        skin_indices=np.ones_like(face.skin_indices),
+    )
+    place = middles(face)
+    eyes = (np.abs(place[:, 1] - 0.2 * 45 / 96) < 0.014) & (np.abs(np.abs(place[:, 0]) - 0.2 * 14 / 96) < 0.014)
+    share = np.count_nonzero(eyes) / len(eyes)
+    assert texels_of(face, eyes) > 1.25 * share * texels_of(face, np.ones(len(eyes), bool))
