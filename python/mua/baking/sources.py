@@ -47,8 +47,7 @@ def load_character(
     """The character in the file at `path` less what `leave_out` names, or the procedural one where no path is given.
 
     Errors: InputError where a size, a direction or something to leave out is given for the procedural one, and for
-    names that no
-    avatar file may have.
+    names that no avatar file may have.
     """
     if path is not None:
         character = read_character(
