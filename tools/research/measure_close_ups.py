@@ -1,26 +1,33 @@
 """Draw the head, a hand and the open borders of characters close up, source beside splats, and print how they differ.
 
 python tools/research/measure_close_ups.py hero.glb witch.vrm --texels 256 -o close_ups/
+python tools/research/measure_close_ups.py hero.glb --avatar hero.muaavatar --motion kicks/ -o close_ups/
 
-Both are drawn as the file stands, without light or motion, from the front and from behind, so that the part fills the
-image. PSNR is over all pixels that either of them covers, on grey, and over those within BORDER of an open border of
-the surface. "Dark" is the share of pixels within FRINGE outside the source's silhouette that are darker than both the
+Both are drawn without light, from the front and from behind, so that the part fills the image: as the file stands, or
+in the last frame and the middle one of every motion. An avatar that was baked from the character is drawn beside them,
+with the light and the moving cloth that it learnt, so that only its share of dark pixels can be compared.
+
+PSNR is over all pixels that either of them covers, on grey, and over those within BORDER of an open border of the
+surface. "Dark" is the share of pixels within FRINGE outside the source's silhouette that are darker than both the
 nearest pixel of the source and the background: a fringe.
 """
 
 import argparse
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from PIL import Image
 from scipy.ndimage import distance_transform_edt
+from unseen_teacher import motions_of
 
 from mua.arrays import Array
+from mua.asset.avatar import Avatar
+from mua.asset.read import read
 from mua.atlas.detail import read_detail
 from mua.avatar.camera import Camera, orbit
-from mua.avatar.decode import pose_splats
+from mua.avatar.decode import decode_clip_frame, pose_splats
 from mua.baking.one_sided import open_edges
 from mua.baking.sources import load_character
 from mua.fidelity.background import over
@@ -29,6 +36,8 @@ from mua.fidelity.measure import MOST_DECIBELS
 from mua.fidelity.painter import Painter
 from mua.fidelity.posing import Moment, Poser, skinned
 from mua.fidelity.splats import SplatPainter
+from mua.pose.clip import Clip
+from mua.pose.encoding import RATE
 from mua.rig.body_parts import BODY_PARTS, body_parts
 from mua.rig.character import Character
 from mua.teachers.simulated.still import StillTeacher
@@ -114,32 +123,51 @@ def near(points: Array, camera: Camera, *, pixels: float) -> Array:
     return np.asarray(distance_transform_edt(~seen) <= pixels) if seen.any() else seen
 
 
-def close_ups(path: Path, *, texels: int, size: int) -> Iterator[tuple[str, Array, Figures]]:
-    """Each part from each side: its name, source beside splats [size, 2 size, 3] in 0..1, and how they differ."""
+def moments(character: Character, motion: Sequence[Path]) -> Iterator[tuple[Moment, Clip, int]]:
+    """The poses to draw, each with its clip and frame; the rest pose where there is no motion."""
+    assert character.source is not None
+    poser = Poser(character.source, character.skeleton)
+    for clip in (one.clip for one in motions_of(character, motion)):
+        for frame in (len(clip) // 2, len(clip) - 1):
+            yield poser.of_clip(clip, frame), clip, frame
+    if not motion:
+        rest = poser.rest()
+        yield rest, Clip(rest.name, RATE, rest.pose.rotations[None], rest.pose.translations[None]), 0
+
+
+def close_ups(
+    path: Path, *, texels: int, size: int, avatar: Avatar | None, motion: Sequence[Path]
+) -> Iterator[tuple[str, Array, list[Figures]]]:
+    """Each part from each side in each pose: its name, images [size, n size, 3] in 0..1, and how splats differ."""
     character = load_character(path, uv="auto", seed=0, detail=read_detail((), uv="auto"))
     if character.source is None:
         raise SystemExit(f"{path}: this format keeps nothing to compare with")
-    poser = Poser(character.source, character.skeleton)
-    moment: Moment = poser.rest()
-    teacher = StillTeacher(character, texels=texels)
-    shown = teacher.frame(moment.pose, moment.stretches)
-    frame = pose_splats(teacher.rig, shown.mesh, texture=shown.texture, pose=moment.pose)
+    teacher, surface = StillTeacher(character, texels=texels), SkinnedSurface(character)
+    edges = open_edges(character.mesh.vertices, character.mesh.faces)
     scene = character.source.scene
-    joints = character.skeleton.skinning(moment.pose.rotations, moment.pose.translations)
-    places = SkinnedSurface(character).posed(joints, moment.stretches).places
-    borders = places[open_edges(character.mesh.vertices, character.mesh.faces)].mean(axis=1)
     with opened() as context:
         paint = Painter(context, scene.parts, scene.materials, screen=(size, size))
         splat = SplatPainter(context, (size, size))
-        drawn = [skinned(scene, part, moment.nodes) for part in scene.parts]
-        for name, box in parts_of(character, places):
-            for side, degrees in SIDES.items():
-                camera = orbit(box, screen=(size, size), azimuth=moment.yaw + float(np.radians(degrees)))
-                middle = camera.view @ np.append(box.mean(axis=0), 1)
-                scale = float(camera.projection[1, 1] * size / 2 / -middle[2])
-                source, splats = paint(drawn, camera), splat(frame, camera)
-                figures = measured(source, splats, near(borders, camera, pixels=BORDER * scale), scale=scale)
-                yield f"{name}, {side}", np.hstack([over(source, GREY), over(splats, GREY)]), figures
+        for moment, clip, at in moments(character, motion):
+            shown = teacher.frame(moment.pose, moment.stretches)
+            frames = [pose_splats(teacher.rig, shown.mesh, texture=shown.texture, pose=moment.pose)]
+            frames += [] if avatar is None else [decode_clip_frame(avatar, clip, frame=at)]
+            joints = character.skeleton.skinning(moment.pose.rotations, moment.pose.translations)
+            places = surface.posed(joints, moment.stretches).places
+            drawn = [skinned(scene, part, moment.nodes) for part in scene.parts]
+            for name, box in parts_of(character, places):
+                for side, degrees in SIDES.items():
+                    camera = orbit(box, screen=(size, size), azimuth=moment.yaw + float(np.radians(degrees)))
+                    middle = camera.view @ np.append(box.mean(axis=0), 1)
+                    scale = float(camera.projection[1, 1] * size / 2 / -middle[2])
+                    source, splats = paint(drawn, camera), [splat(frame, camera) for frame in frames]
+                    border = near(places[edges].mean(axis=1), camera, pixels=BORDER * scale)
+                    figures = [measured(source, one, border, scale=scale) for one in splats]
+                    yield (
+                        f"{moment.name}, {name}, {side}",
+                        np.hstack([over(i, GREY) for i in (source, *splats)]),
+                        figures,
+                    )
 
 
 def main(arguments: list[str] | None = None) -> None:
@@ -148,24 +176,28 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("characters", type=Path, nargs="+")
     parser.add_argument("--texels", type=int, default=256)
     parser.add_argument("--size", type=int, default=1080, help="pixels along a side of an image")
+    parser.add_argument("--avatar", type=Path, help="what was baked from the one character, to be drawn beside it")
+    parser.add_argument("--motion", type=Path, nargs="+", default=[], help="motion files to pose the characters by")
     parser.add_argument("-o", "--output", type=Path, required=True)
     options = parser.parse_args(arguments)
     options.output.mkdir(parents=True, exist_ok=True)
+    avatar = options.avatar and read(options.avatar)
     for path in options.characters:
         found = []
-        for name, image, figures in close_ups(path, texels=options.texels, size=options.size):
+        drawn = close_ups(path, texels=options.texels, size=options.size, avatar=avatar, motion=options.motion)
+        for name, image, figures in drawn:
             file = options.output / f"{path.stem} {name.replace(', ', ' ')}.png"
             Image.fromarray((255 * image).round().astype(np.uint8)).save(file)
             print(_line(f"{path.stem}, {name}", figures), flush=True)
-            found.append((figures.psnr, figures.border, figures.dark))
-        borders = [border for _, border, _ in found if not np.isnan(border)]
-        mean = np.mean(found, axis=0)
-        border = float(np.mean(borders)) if borders else float("nan")
-        print(_line(f"{path.stem}, mean", replace(Figures(*mean), border=border)), flush=True)
+            found.append([(one.psnr, one.border, one.dark) for one in figures])
+        means = [Figures(*mean) for mean in np.nanmean(found, axis=0)]
+        print(_line(f"{path.stem}, mean", means), flush=True)
 
 
-def _line(name: str, figures: Figures) -> str:
-    return f"{name}: {figures.psnr:.2f} dB, at borders {figures.border:.2f} dB, {figures.dark:.1%} dark outside"
+def _line(name: str, figures: Sequence[Figures]) -> str:
+    splats, *avatar = figures
+    own = f"{name}: {splats.psnr:.2f} dB, at borders {splats.border:.2f} dB, {splats.dark:.1%} dark outside"
+    return own + "".join(f"; avatar {one.dark:.1%}" for one in avatar)
 
 
 if __name__ == "__main__":
