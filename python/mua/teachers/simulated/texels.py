@@ -9,6 +9,7 @@ from mua.rig.character import Character
 from mua.rig.rig import Rig
 from mua.rig.texel_map import TexelMap, build_texel_map
 from mua.teacher import Light
+from mua.teachers.simulated.hidden import showing_instead
 from mua.texture.albedo import FINER, finer_picture, sample_albedo
 from mua.texture.deconvolution import deconvolved
 from mua.texture.sh import LINEAR
@@ -19,6 +20,7 @@ from mua.texture.surfels import rest_surfels
 
 MOST_OPAQUE = 5.0  # logit of a texel whose alpha is 1
 MOST_CLEAR = 6.0  # negative logit of one whose alpha is 0: below what changes an 8-bit image, so that it is not drawn
+SOLID = 0.9  # opacity from which a texel hides what is behind it
 SINK = 0.45  # of its smaller standard deviation, by which a splat lies below the surface: on edge, many tails add up
 SHEEN_TINT = 0.5  # how far the sheen has the colour of the surface, as cloth does, rather than that of the lamp
 
@@ -51,6 +53,7 @@ class SurfaceTexels:
         albedo = sample_albedo(character.base_color, uv, texels.size)
         at_home = _at_home(uv, texels) & ~surfels.at_border  # beyond it lies the image of another chart
         albedo[at_home, :3] = _sharp(picture, wanted)[texels.texels[at_home]]
+        albedo[:, :3] = albedo[showing_instead(character, corners, barycentrics, solid=albedo[:, 3] >= SOLID), :3]
         self._relief, self._rest, self._log_scales, self._albedo = (
             np.ascontiguousarray(rows.T, dtype=np.float32)
             for rows in (relief, surfels.smooth, surfels.log_scales, albedo[:, :3])
