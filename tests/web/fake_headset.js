@@ -11,6 +11,7 @@
     ended = false;
 
     async requestReferenceSpace(kind) {
+      if (headset.floorless) throw new Error("There is no floor");
       return { kind };
     }
 
@@ -33,6 +34,8 @@
   const headset = {
     supported: async () => true,
     refused: "",
+    floorless: false,
+    viewport: { ...VIEWPORT },
     adapters: [], // whether each was asked to fit the headset
     async requestSession(mode, { requiredFeatures }) {
       if (headset.refused) throw new DOMException(headset.refused, "NotAllowedError");
@@ -80,7 +83,7 @@
 
     getViewSubImage(layer, { eye }) {
       if (headset.session.state.layers[0] !== layer) throw new TypeError("Not a layer of this session");
-      const image = { colorTexture: layer.texture, viewport: VIEWPORT, eye };
+      const image = { colorTexture: layer.texture, viewport: headset.viewport, eye };
       image.getViewDescriptor = function () {
         return { dimension: "2d", mipLevelCount: 1, arrayLayerCount: 1, baseArrayLayer: this.eye };
       };

@@ -6,7 +6,6 @@
 //   values FRAMES  of the file's first clip, those frames: descriptors, components, joints, boxes; and what the kernels read
 //   stages STEP    of a file that arrives in such steps: how much was there, and what it shows, or code and field of the fault
 //   soon TOTAL BYTES...  whether the rest of so many bytes is expected soon, after so many more every 100 ms; 0: none came
-//   shown STEPS    which avatars an engine is given while one arrives: "part 1", "ready" once it can draw, "whole", "fail"
 //   played CHANGES of a file: clip, time, frame, next frame and box after each change, such as ["speed", 2] or ["advance", 40]
 //   order KEYS     of splats
 //   numbers        half floats, and numbers as sentences have them
@@ -32,7 +31,6 @@ import { groundHeight, shadowArea } from "../../python/mua/web/overlays.js";
 import { boxAround } from "../../python/mua/web/placement.js";
 import { Playback } from "../../python/mua/web/playback.js";
 import { texelTiles, texelWords, upsamplingTaps } from "../../python/mua/web/prepare.js";
-import { ProgressiveLoad } from "../../python/mua/web/progressive.js";
 import { skinning, world } from "../../python/mua/web/skeleton.js";
 import { surfaceMesh } from "../../python/mua/web/surface.js";
 
@@ -204,36 +202,8 @@ function soon(total, bytes) {
   });
 }
 
-/** What is put into an engine, by the step that brought it, and the parts that the page is reported of. */
-async function shown(steps) {
-  let resolve = () => {};
-  const promise = new Promise((done) => (resolve = done));
-  const [put, reported, entries] = [[], [], []];
-  const entry = { handle: { remove: () => put.push("removed") } };
-  const engine = {
-    entries,
-    renderer: { projecting: promise },
-    put: async (avatar) => {
-      put.push(avatar);
-      entries[0] = entry;
-      return entry;
-    },
-  };
-  const progressive = new ProgressiveLoad(engine, () => reported.push(put.at(-1)));
-  const ended = [];
-  for (const step of steps) {
-    if (step === "ready") resolve();
-    else if (step.startsWith("part")) progressive.show(step);
-    else ended.push(step === "whole" ? progressive.complete(step) : progressive.fail());
-    await new Promise((next) => setTimeout(next));
-  }
-  await Promise.all(ended);
-  return { put, reported };
-}
-
 if (what === "measured") say(await measured(given[0], Number(given[1])));
 if (what === "soon") say(soon(...given.slice(0, 1), given.slice(1).map(Number)));
-if (what === "shown") say(await shown(given));
 if (what === "stages") for (const one of await stages(bytes(given[0]), Number(given[1]))) say(one);
 if (what === "answers") for (const file of given) say(await answer(bytes(file)));
 if (what === "mutants") {

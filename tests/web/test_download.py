@@ -1,7 +1,7 @@
 """A file whose connection breaks: the rest is asked for by range, and what cannot be had is a sentence."""
 
 import gzip
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from threading import Event, Thread
@@ -98,22 +98,6 @@ def test_what_is_not_there_when_the_connection_breaks_is_asked_for_by_range(
     assert breaking.asked == [None, f"bytes={BREAK}-"]
 
 
-def test_a_server_that_refuses_ranges_sends_the_file_again(page: Page, breaking: Breaking, content: bytes) -> None:
-    load(page, breaking, Answer(200, len(content), content), until=LOADED)
-    assert breaking.asked == [None, f"bytes={BREAK}-"]
-
-
-@pytest.mark.parametrize(("begin", "reported"), [(BREAK, ""), (BREAK - 8, "another part of it than was asked for")])
-def test_a_part_that_is_not_the_one_that_was_asked_for_is_a_sentence(
-    page: Page, breaking: Breaking, content: bytes, begin: int, reported: str
-) -> None:
-    rest = content[begin : begin + len(content) - BREAK]
-    place = f"bytes {begin}-{begin + len(rest) - 1}/{len(content)}"
-    answer = Answer(206, len(rest), rest, headers=(("Content-Range", place),))
-    load(page, breaking, answer, until=f"{SENTENCE}.includes('{reported}')" if reported else LOADED)
-    assert not reported or page.evaluate(f"{ELEMENT}.avatars.length") == 0
-
-
 @pytest.mark.parametrize("exposed", [True, False])
 def test_a_proxy_that_compresses_a_file_gives_it_whole(
     page: Page, breaking: Breaking, content: bytes, exposed: bool
@@ -144,22 +128,3 @@ def test_a_file_that_ends_early_where_no_length_was_told_is_a_sentence(
 ) -> None:
     breaking.first.append(Answer(200, -1, content[:BREAK]))
     load(page, breaking, until=f"{SENTENCE}.includes('outside the file')")
-
-
-CHANGED: dict[str, Callable[[int], Answer]] = {
-    "other mark": lambda size: Answer(206, size - BREAK, bytes(size - BREAK), etag="two"),
-    "other length": lambda size: Answer(206, size, bytes(size)),
-    "shorter than what is there": lambda size: Answer(416, 0, b""),
-}
-
-
-@pytest.mark.parametrize("change", CHANGED.values(), ids=CHANGED.keys())
-def test_a_file_that_changes_meanwhile_is_a_sentence(
-    page: Page, breaking: Breaking, content: bytes, change: Callable[[int], Answer]
-) -> None:
-    load(page, breaking, change(len(content)), until=f"{SENTENCE}.includes('has changed on the server')")
-
-
-def test_a_file_that_goes_meanwhile_is_a_sentence(page: Page, breaking: Breaking) -> None:
-    load(page, breaking, Answer(404, 0, b""), until=f"{SENTENCE}.includes('was not fetched whole')")
-    assert "then the server answers 404" in page.evaluate(SENTENCE)

@@ -115,8 +115,11 @@ def test_a_screenshot_waits_for_all_kernels(opened: Open, small: Path) -> None:
 
 @pytest.mark.parametrize(
     ("change", "drawn"),
-    [("avatar.remove()", 0), ("player.dispose()", 0), ("document.querySelector('canvas').width = 100", 0), ("0", 1)],
-    ids=["removed", "disposed of", "resized", "nothing"],
+    [
+        *(("avatar.remove()", 0), ("player.dispose()", 0), ("player.canvas.width = 100", 0)),
+        *(("player.canvas.height = 100", 0), ("0", 1)),
+    ],
+    ids=["removed", "disposed of", "wider", "higher", "nothing"],
 )
 def test_what_has_changed_meanwhile_is_not_drawn(opened: Open, small: Path, change: str, drawn: int) -> None:
     page = opened(before=HELD.replace("NAME", "SplatProject"), a=small.read_bytes())

@@ -170,6 +170,20 @@ def test_the_room_goes_with_a_figure_that_is_followed(opened: Open, small: Path,
     assert bool(np.abs(walked).max() > 1e-4) is follow
 
 
+def test_a_picture_is_made_anew_only_for_images_of_another_size(opened: Open, small: Path) -> None:
+    page = opened(before=FAKE, a=small.read_bytes())
+    enter(page, small)
+    sizes = []
+    for viewport in ({}, {}, {"width": 100}, {"width": 100, "height": 90}):
+        page.evaluate(f"(Object.assign(headset.viewport, {json.dumps(viewport)}), headset.show(1000, {given(EYES)}))")
+        textures = (
+            "player.room.headset.memory.textures.map((one) => [(one.mark ??= Math.random()), one.width, one.height])"
+        )
+        sizes.append(page.evaluate(textures))
+    assert sizes[0] == sizes[1]
+    assert [[size[1:] for size in held] for held in sizes[1:]] == [[[240, 160]], [[200, 160]], [[200, 90]]]
+
+
 def test_a_headset_of_one_eye_is_shown_one(opened: Open, device: Device, small: Path) -> None:
     page = opened(before=FAKE, a=small.read_bytes())
     enter(page, small)
@@ -225,8 +239,10 @@ def test_the_page_has_its_picture_again_when_the_session_ends(opened: Open, smal
     [
         ("headset.refused = 'denied by the reader'", "denied by the reader"),
         ("headset.adapters.push(false)", "The device does not fit the headset"),
+        ("headset.floorless = true", "There is no floor"),
+        ("delete globalThis.XRGPUBinding", "this browser has no WebXR with WebGPU"),
     ],
-    ids=["refused", "unfit device"],
+    ids=["refused", "unfit device", "no floor", "without WebGPU"],
 )
 def test_a_session_that_is_refused_is_a_sentence(opened: Open, small: Path, before: str, said: str) -> None:
     page = opened(before=FAKE, a=small.read_bytes())

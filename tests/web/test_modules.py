@@ -12,7 +12,6 @@ import numpy as np
 import pytest
 from damaged import DAMAGED
 from malformed import MALFORMED, malformed
-from mutants import mutant, packed_mutant
 from synthetic_avatar import sparse_avatar, synthetic_avatar, with_random_poses, with_surface
 from unpackable import UNPACKABLE
 
@@ -40,7 +39,6 @@ GOLDEN = HERE.parent / "golden"
 EXACT = 1e-12  # of float64 sums of some dozen terms below 10
 ROUNDED = 2.0**-23 * 8  # of a float32 below 8
 FRAMES = [0, 1, 3, 5]
-MUTANTS = 400
 SECONDS = 600  # a reader that hangs; so many files take some seconds
 CUT = 97  # so many bytes apart a file is cut off
 
@@ -115,16 +113,6 @@ def test_truncated_files_are_refused_alike(tmp_path: Path, content: bytes) -> No
     path.write_bytes(content)
     expected = [python_answer(content[:length]) for length in range(0, len(content), CUT)]
     assert node("truncated", path, CUT) == expected
-
-
-def test_mutants_are_refused_alike(tmp_path: Path, content: bytes) -> None:
-    sound = [content, encode(sparse_avatar(1)), encode(with_surface(synthetic_avatar()), storage="packed")]
-    contents = [mutant(sound, seed) for seed in range(MUTANTS // 2)]
-    contents += [packed_mutant(sound[-1:], seed) for seed in range(MUTANTS // 2)]
-    expected = [python_answer(mutant)[:2] for mutant in contents]
-    found = [answer[:2] for answer in answers(tmp_path, contents)]
-    assert {answer[0] for answer in expected} >= {"ok", "offset", "shape", "value", "range", "packed"}
-    assert found == expected
 
 
 def faster(avatar: Avatar) -> Avatar:

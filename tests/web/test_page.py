@@ -85,6 +85,20 @@ def test_attributes_say_how_finely_avatars_are_shown_and_whether_the_camera_foll
     assert page.evaluate("fake.level") == "auto"
 
 
+def test_the_controls_play_and_choose(opened: Open) -> None:
+    page = opened(files={"other": avatar("other")})
+    assert page.evaluate(f"{part('canvas')}.getAttribute('aria-label')") == "hero"
+    page.evaluate(f"{part('.play')}.click()")
+    assert page.evaluate(f"[fake.playing, {part('.play')}.getAttribute('aria-label')]") == [False, "Play"]
+    for name, value in ((".clips", "wave"), (".speed", "0.5")):
+        page.evaluate(f"(({part(name)}.value = '{value}'), {part(name)}.dispatchEvent(new Event('change')))")
+    assert page.evaluate("[fake.clip, fake.speed]") == ["wave", 0.5]
+    page.evaluate(f"(fake.camera.distance = 9, {part('.reset')}.click())")
+    assert page.evaluate("fake.camera.distance") == 4
+    page.evaluate(f"({ELEMENT}.seek(1), {ELEMENT}.clip = 'wave', 0)")
+    assert page.evaluate("[fake.time, fake.clip]") == [0, "wave"]
+
+
 def test_the_panel_sets_the_level_of_detail_and_following(opened: Open) -> None:
     page = opened()
     level = part(".level")
@@ -110,12 +124,20 @@ def test_keys_do_what_they_do_on_the_desktop(opened: Open) -> None:
     assert page.evaluate("fake.time") == pytest.approx(59 / 30)
     page.press("c")
     assert page.evaluate("[fake.clip, fake.time]") == ["wave", 0]
-    page.press("4", "5")
-    assert page.evaluate("[fake.show.skeleton, fake.show.shadow]") == [True, False]
+    page.press("1", "2", "3", "4", "5")
+    shown = {"splats": False, "geometry": True, "template": True, "skeleton": True, "shadow": False}
+    assert page.evaluate("fake.show") == shown
     page.press("f", "l", "l", "l")
     assert page.evaluate("[fake.follow, fake.level]") == [False, 192]
     page.press("s")
     assert page.evaluate("fake.stereo") is True
+    for key, notches in (("+", 1), ("=", 2), ("-", 1), ("r", 0)):
+        page.press(key)
+        assert page.evaluate("fake.camera.distance") == pytest.approx(4 / 1.15**notches), key
+    page.do("down", key="Control")
+    page.press("c", "4")
+    page.do("up", key="Control")
+    assert page.evaluate("[fake.clip, fake.show.skeleton]") == ["wave", True]
 
 
 def test_every_key_of_the_desktop_is_here() -> None:
@@ -137,6 +159,11 @@ def test_a_control_that_has_the_focus_keeps_its_keys(opened: Open) -> None:
     page.evaluate(f"{part('[name=skeleton]')}.focus()")
     page.press(" ")
     assert page.evaluate("[fake.playing, fake.show.skeleton]") == [True, True]
+    page.press("c")
+    assert page.evaluate("fake.clip") == "wave"
+    page.evaluate(f"({part('.scrub')}.step = 0.5, {part('.scrub')}.focus())")
+    page.press("ArrowRight")
+    assert page.evaluate("fake.time") == 0.5
 
 
 def test_shift_and_arrows_turn(opened: Open) -> None:

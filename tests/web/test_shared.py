@@ -13,12 +13,10 @@ from typing import Any
 import numpy as np
 import pytest
 from PIL import Image
-from synthetic_avatar import synthetic_avatar
 from web.browser import Browser, Page, Serve
 from web.pages import ELEMENT, LOSABLE, SENTENCE, SHADOW
 
 from mua.arrays import Array
-from mua.asset.write import encode
 from mua.share.poster import front, opening, poster
 from mua.share.single import single_page
 from mua.share.site import Content, Shown, player_files, player_site
@@ -126,30 +124,6 @@ def test_a_single_file_plays_from_the_disk(browser: Browser, avatar_file: Path, 
     assert all(url.startswith(("file:", "blob:", "data:")) for url in reported["requests"])
     assert page.evaluate(f"{ELEMENT}.avatars.length") == 1
     page.close()
-
-
-@pytest.mark.parametrize(
-    ("content", "said"),
-    [
-        (b"<!doctype html><p>not found", "a.muaavatar: "),
-        (encode(synthetic_avatar())[:-1000], "a.muaavatar: "),
-        (b"", "a.muaavatar: "),
-    ],
-    ids=["wrong file", "half a file", "empty"],
-)
-def test_a_file_that_is_no_avatar_is_a_sentence(
-    opened: Open, folder: dict[str, Content], content: bytes, said: str
-) -> None:
-    page = opened({**folder, "a.muaavatar": content}, until=f"{SENTENCE}.startsWith('{said}')")
-    sentence = page.evaluate(SENTENCE)
-    assert len(sentence) > len(said) + 10
-    assert "undefined" not in sentence
-
-
-def test_an_absent_avatar_is_a_sentence(opened: Open, folder: dict[str, Content]) -> None:
-    del folder["a.muaavatar"]
-    page = opened(folder, until=f"{SENTENCE}.includes('cannot be fetched')")
-    assert "404" in page.evaluate(SENTENCE)
 
 
 def test_no_webgpu_is_a_sentence(opened: Open, folder: dict[str, Content]) -> None:

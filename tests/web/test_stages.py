@@ -105,25 +105,6 @@ def test_the_rest_is_expected_by_how_fast_bytes_come_and_whether_they_do(
     assert node("soon", total, *arriving)[0] == soon
 
 
-@pytest.mark.parametrize(
-    ("steps", "put", "reported"),
-    [
-        (["ready", "part 1", "whole"], ["part 1", "whole"], ["part 1"]),
-        (["ready", "part 1", "part 2", "whole"], ["part 1", "part 2", "whole"], ["part 1", "part 2"]),
-        (["part 1", "ready", "whole"], ["part 1", "whole"], ["part 1"]),
-        (["part 1", "part 2", "ready", "whole"], ["part 2", "whole"], ["part 2"]),
-        (["part 1", "whole", "ready"], ["whole"], []),
-        (["ready", "part 1", "fail"], ["part 1", "removed"], ["part 1"]),
-        (["part 1", "fail", "ready"], [], []),
-    ],
-    ids=["part", "parts", "while it compiles", "newest", "whole by then", "failed", "failed by then"],
-)
-def test_a_part_is_shown_unless_more_is_there_by_the_time_that_the_device_can_draw(
-    steps: list[str], put: list[str], reported: list[str]
-) -> None:
-    assert node("shown", *steps) == [{"put": put, "reported": reported}]
-
-
 @pytest.mark.parametrize("storage", ["f16", "i8"])
 def test_a_plain_file_is_only_shown_whole(tmp_path: Path, storage: Any) -> None:
     assert stages(tmp_path, encode(synthetic_avatar(), storage=storage)) == []

@@ -3,7 +3,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { readOrder, writeOrder } from "../../../python/mua/web/early.js";
-import { Renderer } from "../../../python/mua/web/renderer.js";
 
 globalThis.GPUBufferUsage = { MAP_READ: 1, COPY_DST: 8 };
 globalThis.GPUMapMode = { READ: 1 };
@@ -63,48 +62,3 @@ test("the device draws as many splats as are in order", () => {
     ["arguments", [18, 1, 0, 0, 3]],
   ]);
 });
-
-/** A renderer that draws an early picture while `change` happens to it; how many pictures that makes. */
-async function drawnEarly(change) {
-  const { device, splats } = deviceWith([3, 1], { lost: change === "lost" });
-  device.gpu.queue.onSubmittedWorkDone = async () => {};
-  const renderer = {
-    device,
-    splats: { ...splats, projectAll: () => {} },
-    canvas: { width: 40, height: 30 },
-    projecting: Promise.resolve(),
-  };
-  let pictures = 0;
-  Object.assign(renderer, {
-    compute: () => {},
-    pose: () => {},
-    send: () => {},
-    compile: async () => {},
-    context: { getCurrentTexture: () => 0 },
-    scene: { draw: () => (pictures += 1) },
-  });
-  const { copyBufferToBuffer: copy } = device.gpu.createCommandEncoder();
-  const create = device.gpu.createCommandEncoder;
-  device.gpu.createCommandEncoder = () => ({
-    ...create(),
-    copyBufferToBuffer: (...given) => (copy(...given), change.call?.(0, renderer)),
-  });
-  const look = {
-    camera: { azimuth: 0, elevation: 0, distance: 3, target: [0, 0, 0], fov: 0.5 },
-    stereo: false,
-    show: {},
-  };
-  await Renderer.prototype.drawEarly.call(renderer, [], look);
-  return pictures;
-}
-
-for (const [what, change, pictures] of [
-  ["nothing", () => {}, 1],
-  ["the avatars", (renderer) => (renderer.splats = { ...renderer.splats }), 0],
-  ["the canvas' width", (renderer) => (renderer.canvas.width = 41), 0],
-  ["the canvas' height", (renderer) => (renderer.canvas.height = 31), 0],
-  ["the device, which is lost", "lost", 0],
-])
-  test(`where ${what} has changed meanwhile, so many pictures are drawn: ${pictures}`, async () => {
-    assert.equal(await drawnEarly(change), pictures);
-  });
