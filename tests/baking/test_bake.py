@@ -7,33 +7,32 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from commands import process
+from commands import Commands, Ended, process
 from gltf_files import animate, body
 from PIL import Image
 from recordings import content
 from silent import Silent
 from small_bakes import SMALL
-from synthetic_avatar import synthetic_avatar
 
 from mua.asset import read
 from mua.baking.distillation import Baked
 from mua.baking.pipeline import bake, parts
-from mua.baking.plan import HeldOut, plan, split
+from mua.baking.plan import plan, split
 from mua.baking.recorded import recording_key
 from mua.baking.settings import BakeSettings
 from mua.baking.sources import load_character
 from mua.channels import ATTRIBUTES
-from mua.errors import InputError
 from mua.files.lock import DirectoryLock
-from mua.pose.clip import Clip, Stretches, is_range
+from mua.pose.clip import is_range
 from mua.pose.encoding import RATE
 from mua.pose.resample import resample
-from mua.recording import PlannedClip, Recording
+from mua.recording import Recording
 from mua.rig.bounds import playback_bounds
 
 
@@ -190,137 +189,79 @@ def test_a_recording_of_another_surface_is_not_taken_for_this_one(tmp_path: Path
     assert len(set(keys)) == 1 + len(others) + len(other_settings)
 
 
-def test_a_recording_of_other_motion_is_not_taken_for_this_one() -> None:
-    clip = synthetic_avatar().clips[0]
-    first = PlannedClip(clip, held_out=False, wanted=frozenset({0}))
-    twist = Stretches(np.array([1]), np.tile(np.diag([1.0, 2, 1]), (len(clip), 1, 1, 1)))
-    others = [
-        dataclasses.replace(first, held_out=True),
-        dataclasses.replace(first, wanted=frozenset({0, 1})),
-        dataclasses.replace(first, whole=frozenset({0})),
-        dataclasses.replace(first, run_up=clip),
-        dataclasses.replace(first, run_up=dataclasses.replace(clip, translations=clip.translations + 1)),
-        *(
-            dataclasses.replace(first, clip=dataclasses.replace(clip, **changed))
-            for changed in (
-                {"name": "another"},
-                {"rotations": clip.rotations[::-1]},
-                {"translations": clip.translations + 1},
-                {"stretches": twist},
-                {"stretches": dataclasses.replace(twist, joints=np.array([2]))},
-                {"stretches": dataclasses.replace(twist, matrices=2 * twist.matrices)},
-            )
-        ),
-    ]
-    assert len({recording_key([b"teacher"], [one]) for one in (first, *others)}) == 1 + len(others)
-    assert recording_key([b"teacher"], [first]) == recording_key([b"teacher"], [first])
-    assert recording_key([b"another"], [first]) != recording_key([b"teacher"], [first])
-
-
-def clip(name: str, frames: int) -> Clip:
-    return Clip(name, 30.0, np.tile([1.0, 0, 0, 0], (frames, 1, 1)), np.zeros((frames, 1, 3)))
-
-
-def test_plan_spreads_frames_over_all_training_clips() -> None:
-    planned = plan([clip("a", 30), clip("b", 10)], [HeldOut(clip("c", 100))], frames=8)
-    assert [len(p.wanted) for p in planned] == [6, 2, 2]
-    assert [p.held_out for p in planned] == [False, False, True]
-
-
-@pytest.mark.parametrize(("frames", "recorded"), [(1, [0, 0, 1]), (8, [0, 1, 1]), (40, [3, 3, 4]), (4000, [40, 40, 7])])
-def test_held_out_frames_are_at_most_a_quarter_of_the_training_frames(frames: int, recorded: list[int]) -> None:
-    held = [HeldOut(clip("b", 100)), HeldOut(clip("c", 200)), HeldOut(clip("d", 7))]
-    planned = plan([clip("a", 5000)], held, frames=frames)
-    assert [len(p.wanted) for p in planned if p.held_out] == recorded
-
-
-def test_plan_takes_every_frame_where_more_are_asked_for() -> None:
-    (planned,) = plan([clip("a", 7)], [], frames=1000)
-    assert planned.wanted == frozenset(range(7))
-
-
-def test_without_names_the_end_of_every_clip_is_held_out() -> None:
-    training, held = split([clip("a", 50), clip("b", 3)], [])
-    assert [(c.name, len(c)) for c in training] == [("a", 40), ("b", 3)]
-    assert [(own.clip.name, len(own.clip)) for own in held] == [("a (end)", 10)]
-
-
-def test_an_end_takes_no_name_that_a_clip_has() -> None:
-    training, held = split([clip("a", 50), clip("a (end)", 50)], [])
-    assert [c.name for c in training] == ["a", "a (end)"]
-    assert [own.clip.name for own in held] == ["a (end) (end)"]
-
-
-def test_what_comes_before_a_held_out_end_is_played_first() -> None:
-    places = np.arange(200.0)[:, None, None] * np.ones(3)
-    long = dataclasses.replace(clip("a", 200), translations=places)
-    _, held = split([long, long.cut(slice(50))], [])
-    planned = plan([], held, frames=100)
-    assert [own.run_up.translations[[0, -1], 0, 0].tolist() for own in planned if own.run_up] == [[100, 159], [0, 39]]
-    _, (whole,) = split([long, dataclasses.replace(long, name="b")], ["b"])
-    assert whole.run_up is None
-
-
-def test_unknown_held_out_clip_is_named() -> None:
-    with pytest.raises(InputError, match="--hold-out z: there is no such clip; expected a"):
-        split([clip("a", 50)], ["z"])
-
-
-def test_holding_out_everything_is_refused() -> None:
-    with pytest.raises(InputError, match="no clip to train on"):
-        split([clip("a", 50)], ["a"])
-
-
-def refused(directory: Path, *arguments: object) -> str:
+@pytest.fixture
+def refused(command: Commands, tmp_path: Path) -> Callable[..., str]:
     """The sentence that mua-bake ends with; an earlier result must survive and nothing new be left."""
-    output = directory / "out.muaavatar"
-    output.write_bytes(b"an earlier result")
-    before = sorted(directory.iterdir())
-    ended = process("bake", *arguments, "-o", output)
-    assert output.read_bytes() == b"an earlier result"
-    assert sorted(directory.iterdir()) == before
-    return ended.sentence
+
+    def run(*arguments: object, bake: Callable[..., Ended] = command) -> str:
+        output = tmp_path / "out.muaavatar"
+        output.write_bytes(b"an earlier result")
+        before = sorted(tmp_path.iterdir())
+        ended = bake("bake", *arguments, "-o", output)
+        assert output.read_bytes() == b"an earlier result"
+        assert sorted(tmp_path.iterdir()) == before
+        return ended.sentence
+
+    return run
 
 
-def test_truncated_character_is_named(tmp_path: Path) -> None:
+def test_truncated_character_is_named(tmp_path: Path, refused: Callable[..., str]) -> None:
     (tmp_path / "half.glb").write_bytes(b"glTF\x02\0\0\0\xff\0\0\0")
-    assert "half.glb" in refused(tmp_path, tmp_path / "half.glb")
+    assert "half.glb" in refused(tmp_path / "half.glb", bake=process)
 
 
-def test_empty_motion_is_named(tmp_path: Path) -> None:
-    (tmp_path / "empty.bvh").write_text(
-        "HIERARCHY\nROOT hips\n{\nOFFSET 0 0 0\nCHANNELS 3 Xposition Yposition "
-        "Zposition\n}\nMOTION\nFrames: 0\nFrame Time: 0.03\n"
-    )
-    assert "empty.bvh" in refused(tmp_path, "--motion", tmp_path / "empty.bvh")
+ALIEN = """HIERARCHY
+ROOT qqq
+{
+OFFSET 0 0 0
+CHANNELS 3 Zrotation Xrotation Yrotation
+JOINT zzz
+{
+OFFSET 0 1 0
+CHANNELS 3 Zrotation Xrotation Yrotation
+End Site
+{
+OFFSET 0 1 0
+}
+}
+}
+MOTION
+Frames: 2
+Frame Time: 0.03
+0 0 0 0 0 0
+0 0 0 1 0 0
+"""
 
 
-def test_motion_whose_joints_match_nothing_is_named(tmp_path: Path) -> None:
-    (tmp_path / "alien.bvh").write_text(
-        "HIERARCHY\nROOT qqq\n{\nOFFSET 0 0 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nJOINT zzz\n{\nOFFSET 0 1 0\n"
-        "CHANNELS 3 Zrotation Xrotation Yrotation\nEnd Site\n{\nOFFSET 0 1 0\n}\n}\n}\n"
-        "MOTION\nFrames: 2\nFrame Time: 0.03\n0 0 0 0 0 0\n0 0 0 1 0 0\n"
-    )
-    sentence = refused(tmp_path, "--motion", tmp_path / "alien.bvh")
-    assert "alien.bvh" in sentence
-    assert "no joint name" in sentence
+@pytest.mark.parametrize(
+    ("motion", "said"),
+    [(ALIEN.replace("Frames: 2", "Frames: 0").partition("0.03\n")[0] + "0.03\n", ""), (ALIEN, "no joint name")],
+    ids=["empty", "alien"],
+)
+def test_motion_that_moves_nothing_is_named(
+    tmp_path: Path, refused: Callable[..., str], motion: str, said: str
+) -> None:
+    (tmp_path / "walk.bvh").write_text(motion)
+    sentence = refused("--motion", tmp_path / "walk.bvh")
+    assert "walk.bvh" in sentence
+    assert said in sentence
 
 
-def test_unknown_clip_to_store_is_named_before_anything_is_recorded(tmp_path: Path) -> None:
-    assert "--clips jump: there is no such clip; expected walk, turn" in refused(tmp_path, "--clips", "jump")
+def test_unknown_clip_to_store_is_named_before_anything_is_recorded(refused: Callable[..., str]) -> None:
+    assert "--clips jump: there is no such clip; expected walk, turn" in refused("--clips", "jump")
 
 
 @pytest.mark.parametrize("named", ["joint", "clip"])
-def test_refuses_a_control_character_in_a_name_before_anything_is_recorded(named: str, tmp_path: Path) -> None:
+def test_refuses_a_control_character_in_a_name_before_anything_is_recorded(
+    tmp_path: Path, refused: Callable[..., str], named: str
+) -> None:
     glb, bell = body(), "be\x07ll"
     glb.json["nodes"][1]["name"] = bell if named == "joint" else "spine"
     turns = [[0, 0, 0, 1], [0, 0, 1, 0]]
     animate(glb, 1, "rotation", times=[0, 1], values=turns, name=bell if named == "clip" else "wave")
-    sentence = refused(tmp_path, glb.save(tmp_path / "hero.glb"), "--preset", "tiny")
-    assert (
-        f"hero{'.glb' if named == 'joint' else ''}: the {named} 'be\\x07ll' has the control character U+0007"
-        in sentence
-    )
+    sentence = refused(glb.save(tmp_path / "hero.glb"), "--preset", "tiny")
+    ending = ".glb" if named == "joint" else ""
+    assert f"hero{ending}: the {named} 'be\\x07ll' has the control character U+0007" in sentence
 
 
 @pytest.mark.long
@@ -341,6 +282,6 @@ def test_killed_bake_ends_in_the_same_bytes(baked: Baked, tmp_path: Path) -> Non
     assert (tmp_path / "a.muaavatar").read_bytes() == baked.output.read_bytes()
 
 
-def test_a_command_is_refused_where_another_is_at_work(baked: Baked, tmp_path: Path) -> None:
+def test_a_command_is_refused_where_another_is_at_work(tmp_path: Path, refused: Callable[..., str]) -> None:
     with DirectoryLock(tmp_path / "out.work", name="the other"):
-        assert f"--work {tmp_path / 'out.work'}: process {os.getpid()} is using it" in refused(tmp_path)
+        assert f"--work {tmp_path / 'out.work'}: process {os.getpid()} is using it" in refused(bake=process)

@@ -43,12 +43,6 @@ def test_rejects_a_number_out_of_range(options: dict[str, Any], sentence: str) -
         settings(**options)
 
 
-def test_rejects_a_teacher_option_out_of_range(command: Commands, tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=r"--refine 10\.5: expected 0 to 10 degrees"):
-        mua.teach(tmp_path, refine=10.5)
-    assert command("teach", tmp_path, "--steps", 0).sentence == "error: --steps 0: expected at least 1"
-
-
 def test_one_process_per_core_records_by_default() -> None:
     assert settings(jobs=3).jobs == 3
     assert settings().jobs >= 1

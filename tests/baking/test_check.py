@@ -11,19 +11,13 @@ from column_files import column_file
 from commands import Commands
 from PIL import Image
 from rich.console import Console
-from silent import Silent
-from small_bakes import SMALL
 from typer.testing import CliRunner
 
 from mua.baking.check import Check
-from mua.baking.contact_sheet import CELL
-from mua.baking.pipeline import bake
-from mua.baking.settings import BakeSettings
 from mua.characters.read import read_surfaces
 from mua.cli.bake import main
 from mua.cli.check import LOOKS_WRONG, show
 from mua.errors import InputError
-from mua.fidelity.strips import CAPTION
 from mua.motion.load import load_motions
 from mua.motion.mapping import read_mapping
 from mua.motion.match import JointPair
@@ -94,25 +88,6 @@ def test_the_procedural_character_is_checked_without_a_picture(tmp_path: Path) -
     text = run("--check", "--texels", 64, "-o", tmp_path / "a.muaavatar")
     assert "nothing to compare" in text
     assert not list(tmp_path.iterdir())
-
-
-def test_a_bake_tells_the_fidelity_and_its_contact_sheet_begins_with_it(tmp_path: Path) -> None:
-    notes: list[str] = []
-
-    class Hearing(Silent):
-        def note(self, sentence: str) -> None:
-            notes.append(sentence)
-
-    settings = BakeSettings(tmp_path / "a.muaavatar", tmp_path / "work", SMALL, "cpu", character=column_file(tmp_path))
-    baked = bake(settings, Hearing())
-    assert any(sentence.startswith("Splats compared with the source: silhouettes overlap by") for sentence in notes)
-    assert baked.sheet is not None
-    with Image.open(baked.sheet) as sheet:
-        strip = CELL[1] + CAPTION
-        assert sheet.height % strip == 0
-        pictures = np.asarray(sheet)[CAPTION : 2 * strip, :, :].astype(int)
-    source, splats = pictures[: CELL[1], : CELL[0]], pictures[: CELL[1], CELL[0] : 2 * CELL[0]]
-    assert np.count_nonzero((source == 255).all(axis=-1) != (splats == 255).all(axis=-1)) < 0.1 * source[..., 0].size
 
 
 def test_figures_without_a_check_are_refused(tmp_path: Path) -> None:

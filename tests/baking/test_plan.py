@@ -1,11 +1,9 @@
 """Which frames of a character's clips are recorded, and which are kept to test on."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 
-from mua.baking.plan import HELD_FRAMES, HELD_PART, RUN_UP, WHOLE_FRAMES, HeldOut, describe_plan, plan, split
+from mua.baking.plan import RUN_UP, WHOLE_FRAMES, HeldOut, describe_plan, plan, split
 from mua.errors import InputError
 from mua.pose.clip import Clip
 
@@ -52,6 +50,11 @@ def test_frames_lie_in_the_middle_of_equal_shares_of_all_clips() -> None:
     assert [one.whole == one.wanted for one in planned] == [True, True]
 
 
+def test_every_frame_is_recorded_where_more_are_asked_for() -> None:
+    (planned,) = plan([clip("a", 7)], [], frames=1000)
+    assert planned.wanted == frozenset(range(7))
+
+
 def test_of_many_frames_some_are_kept_whole() -> None:
     (planned,) = plan([clip("walk", 1000)], [], frames=600)
     assert planned.whole is not None
@@ -60,13 +63,12 @@ def test_of_many_frames_some_are_kept_whole() -> None:
     assert max(planned.whole) > 980
 
 
-def test_held_out_clips_share_a_quarter_of_the_frames_up_to_so_many_each() -> None:
-    held = [HeldOut(clip(str(k), 100)) for k in range(3)]
-    few, many = (plan([clip("walk", 4000)], held, frames=frames)[1:] for frames in (40, 4000))
-    assert sum(len(one.wanted) for one in few) == 40 // HELD_PART
-    assert [len(one.wanted) for one in many] == [HELD_FRAMES] * 3
-    assert all(one.held_out and one.whole == one.wanted for one in (*few, *many))
-    assert SimpleNamespace(**vars(many[0])).run_up is None
+@pytest.mark.parametrize(("frames", "recorded"), [(1, [0, 0, 1]), (8, [0, 1, 1]), (40, [3, 3, 4]), (4000, [40, 40, 7])])
+def test_held_out_clips_share_a_quarter_of_the_frames_up_to_so_many_each(frames: int, recorded: list[int]) -> None:
+    held = [HeldOut(clip("b", 100)), HeldOut(clip("c", 200)), HeldOut(clip("d", 7))]
+    training, *kept = plan([clip("a", 5000)], held, frames=frames)
+    assert ([len(one.wanted) for one in kept], len(training.wanted)) == (recorded, frames)
+    assert all(one.held_out and one.whole == one.wanted and one.run_up is None for one in kept)
 
 
 def test_how_many_frames_are_recorded_is_said_with_the_reason() -> None:

@@ -3,17 +3,21 @@
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from column_files import column_file
 from many_rigs import RIGS, character
+from PIL import Image
 from silent import Silent
 from small_bakes import SMALL
 
 from mua.asset import read
+from mua.baking.contact_sheet import CELL
 from mua.baking.pipeline import bake
 from mua.baking.ranges import clips_of, planned_range, range_frames, settings_for
 from mua.baking.settings import BakeSettings, MotionRange
 from mua.errors import InputError
+from mua.fidelity.strips import CAPTION
 from mua.pose.clip import Clip, is_range
 
 
@@ -79,11 +83,25 @@ def test_a_character_with_animation_keeps_to_it(tmp_path: Path) -> None:
     assert ([clip.name for clip in clips], notes) == (["own"], [])
 
 
-def test_a_file_without_animation_is_baked_and_played(tmp_path: Path) -> None:
+def test_a_file_without_animation_is_baked_played_and_compared_with_its_source(tmp_path: Path) -> None:
+    notes: list[str] = []
+
+    class Hearing(Silent):
+        def note(self, sentence: str) -> None:
+            notes.append(sentence)
+
     asked = bake_settings(tmp_path, frames=12)
     student = replace(asked.student, texels=32)
-    baked = bake(replace(asked, student=student, character=column_file(tmp_path, clip=False)), Silent())
+    baked = bake(replace(asked, student=student, character=column_file(tmp_path, clip=False)), Hearing())
     clips = read(baked.output).clips
     assert clips
     assert not any(is_range(clip.name) or len(clip) <= 10 for clip in clips)
     assert set(baked.errors) == {"training", *(f"{clip.name} (end)" for clip in clips)}
+    assert any(sentence.startswith("Splats compared with the source: silhouettes overlap by") for sentence in notes)
+    assert baked.sheet is not None
+    with Image.open(baked.sheet) as sheet:
+        strip = CELL[1] + CAPTION
+        assert sheet.height % strip == 0
+        pictures = np.asarray(sheet)[CAPTION : 2 * strip, :, :].astype(int)
+    source, splats = pictures[: CELL[1], : CELL[0]], pictures[: CELL[1], CELL[0] : 2 * CELL[0]]
+    assert np.count_nonzero((source == 255).all(axis=-1) != (splats == 255).all(axis=-1)) < 0.1 * source[..., 0].size

@@ -20,6 +20,7 @@ from mua_research import filmed_training
 
 CLIP = synthetic_avatar().clips[0]
 PLANNED = PlannedClip(CLIP, held_out=False, wanted=frozenset({0, 2, 3}), whole=None)
+TWISTS = np.ones((len(CLIP), 3, 3, 3))
 
 
 class Heard:
@@ -67,10 +68,13 @@ OTHERS: dict[str, PlannedClip] = {
     "rotations": replace(PLANNED, clip=replace(CLIP, rotations=-CLIP.rotations)),
     "translations": replace(PLANNED, clip=replace(CLIP, translations=CLIP.translations + 1)),
     "run-up": replace(PLANNED, run_up=CLIP),
-    "stretches": replace(PLANNED, clip=replace(CLIP, stretches=Stretches(np.arange(3), np.ones((len(CLIP), 3, 3, 3))))),
-    "other stretches": replace(
-        PLANNED, clip=replace(CLIP, stretches=Stretches(np.arange(3), np.zeros((len(CLIP), 3, 3, 3))))
-    ),
+    "other run-up": replace(PLANNED, run_up=replace(CLIP, translations=CLIP.translations + 1)),
+    **{
+        f"stretches {number}": replace(PLANNED, clip=replace(CLIP, stretches=Stretches(joints, matrices)))
+        for number, (joints, matrices) in enumerate(
+            [(np.arange(3), TWISTS), (np.arange(3), 2 * TWISTS), (np.array([0, 2, 1]), TWISTS)]
+        )
+    },
 }
 
 

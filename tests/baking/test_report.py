@@ -43,14 +43,6 @@ def printed(groups: dict[str, Errors]) -> list[list[str]]:
     return [line.replace("│", " ").split("  ") for line in output.getvalue().splitlines() if "│" in line]
 
 
-def test_held_out_clips_count_by_their_frames() -> None:
-    held = held_out_errors(GROUPS)
-    assert held is not None
-    assert held.frames == 4
-    assert held.explained("SH") == pytest.approx(1 - (0.2**2 + 3 * 0.4**2) / 4)
-    assert held_out_errors({"training": errors(0.1)}) is None
-
-
 def test_the_terminal_has_a_line_for_training_for_all_held_out_and_for_each_clip() -> None:
     names = [next(cell.strip() for cell in row if cell.strip()) for row in printed(GROUPS)]
     assert names == ["training", HELD_OUT, "walk (end)", "dance"]

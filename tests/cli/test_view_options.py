@@ -1,6 +1,5 @@
 """Every option of mua-view acts in the window as in files, or is refused in a sentence before anything is loaded."""
 
-import inspect
 from pathlib import Path
 from typing import Any
 
@@ -11,37 +10,6 @@ from mua.cli.view_options import Asked, look_of
 from mua.errors import InputError
 
 NOWHERE = Path("nowhere.muaavatar")  # an option is refused although there is no such file
-VALUES: dict[
-    str, Any
-] = {  # one of every option that says what is seen, and where it ends up in the Look of window and file
-    "size": "300x200",
-    "azimuth": 90.0,
-    "elevation": 10.0,
-    "zoom": 2.0,
-    "look_at": "head",
-    "orbit": 45.0,
-    "follow": True,
-    "stereo": True,
-    "background": "#204060",
-    "show": "skeleton",
-    "level": "384",
-}
-
-
-@pytest.mark.parametrize("output", [None, Path("v.mp4")])
-@pytest.mark.parametrize("option", VALUES)
-def test_an_option_changes_what_window_and_file_show(option: str, output: Path | None) -> None:
-    value = False if (option, output) == ("follow", None) else VALUES[option]
-    choice: dict[str, Any] = {option: value}
-    assert look_of(Asked(**choice), output) != look_of(Asked(), output)
-
-
-def test_no_option_is_forgotten() -> None:
-    asked = {*VALUES, "ipd"}
-    others = {"files", "clip", "frame", "frames", "motion", "mapping", "output", "turntable", "device", "list_devices"}
-    others |= {"web", "no_open"}
-    assert set(inspect.signature(view).parameters) == asked | others | {"reference"}
-    assert set(inspect.signature(Asked).parameters) == asked
 
 
 @pytest.mark.parametrize(
