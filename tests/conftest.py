@@ -97,6 +97,16 @@ def mua_train(command: Commands, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
     return train
 
 
+@pytest.fixture(scope="session")
+def kept_atlases() -> Iterator[None]:
+    """Characters that were read before are read with the atlas that was built for them then."""
+    from atlases import keep_atlases  # here, because few tests need one
+
+    with pytest.MonkeyPatch.context() as patch:
+        keep_atlases(patch)
+        yield
+
+
 @pytest.fixture
 def packages(tmp_path: Path) -> list[Path]:
     """Two small UPM packages that keep every rule."""

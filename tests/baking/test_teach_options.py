@@ -4,9 +4,7 @@ import json
 import shutil
 from collections.abc import Callable
 from dataclasses import replace
-from functools import cache
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -20,13 +18,11 @@ from small_teachers import SETTINGS as SMALL
 from torch import Tensor
 
 import mua
-from mua.atlas.uv import build_atlas
 from mua.baking import teacher_stages
 from mua.capture import open_capture
 from mua.capture.outline import pixels, posed_template
 from mua.capture.write import write_capture
 from mua.motion.poses_file import read_poses, write_poses
-from mua.rig.character import Character
 from mua.splatting import perceptual
 from mua.splatting.rasterise import rasterise_views
 from mua.teachers.trained import model, settings
@@ -34,6 +30,8 @@ from mua.teachers.trained.folder import load_teacher
 from mua.teachers.trained.image_losses import ImageLoss
 from mua.teachers.trained.template_training import TemplateSettings
 from mua.training.schedule import Schedule
+
+pytestmark = pytest.mark.usefixtures("kept_atlases")
 
 TEXELS, STEPS = 64, 2
 
@@ -51,14 +49,6 @@ class Distance:
         return self.times * (image - truth).abs().mean()
 
 
-@cache
-def atlas() -> Character:
-    """Of the template of all captures; to lay it out takes longer than all else."""
-    with TemporaryDirectory() as folder:
-        surfaces = make_capture(Path(folder)).surfaces
-    return build_atlas(surfaces, uv="auto", size=64)
-
-
 @pytest.fixture(autouse=True)
 def quick(monkeypatch: pytest.MonkeyPatch) -> None:
     small(monkeypatch)
@@ -66,7 +56,6 @@ def quick(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def small(patch: pytest.MonkeyPatch) -> None:
     few = Schedule(steps=2, batch=1, lr=1e-2)
-    patch.setattr("mua.capture.capture.build_atlas", lambda surfaces, **_: atlas())
     patch.setattr(teacher_stages, "TEMPLATE", replace(TemplateSettings(), nodes=few, offsets=few))
     patch.setattr(perceptual, "Lpips", Distance)
     patch.setitem(settings.PRESETS, "tiny", FEW)

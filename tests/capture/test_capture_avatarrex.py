@@ -19,7 +19,6 @@ from mua.capture import open_capture
 from mua.capture.outline import pixels
 from mua.errors import InputError
 from mua.motion.poses_file import read_poses, write_poses
-from mua.motion.read import read_motion
 from mua.pose.clip import Clip
 
 PIXEL_BOUND = 1e-3  # float32 positions of a template some metres away, at a focal length of 1200
@@ -242,21 +241,6 @@ def test_a_lens_of_another_model_is_refused(tmp_path: Path, command: Commands, c
 def test_braces_in_the_name_of_the_folder_are_no_fields(tmp_path: Path, command: Commands) -> None:
     source = write_source(tmp_path / "{clip} of {me}", WORLDS["y"])
     assert open_capture(described(source, command)).view("frames_000000", 1, "22010708").image.shape[0] == SIZE[1]
-
-
-def test_poses_are_read_as_they_were_written(tmp_path: Path) -> None:
-    skeleton, rng = template(), np.random.default_rng(1)
-    turns = rng.normal(size=(4, 55, 4))
-    clip = Clip("dance", 24.0, turns / np.linalg.norm(turns, axis=-1, keepdims=True), rng.normal(size=(4, 55, 3)))
-    write_poses(tmp_path / "dance.npz", skeleton, clip)
-    (found,) = read_motion(tmp_path / "dance.npz")
-    assert (found.clip.name, found.clip.rate, found.skeleton.names, found.skeleton.root) == (
-        *("dance", 24.0, skeleton.names, skeleton.root),
-    )
-    np.testing.assert_array_equal(found.clip.rotations, clip.rotations)
-    np.testing.assert_array_equal(found.clip.translations, clip.translations)
-    np.testing.assert_array_equal(found.skeleton.bind_translations, skeleton.bind_translations)
-    np.testing.assert_array_equal(found.skeleton.parents, skeleton.parents)
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ import pytest
 from PIL import Image
 
 from mua.atlas.pictures import decode_image
-from mua.capture.pictures import as_mask, read_mask, read_picture
+from mua.capture.pictures import read_mask, read_picture
 from mua.errors import InputError
 
 GREY = np.array([[0, 1, 100], [128, 254, 255]], np.uint8)
@@ -36,13 +36,6 @@ def test_colours_are_read_with_the_alpha_that_the_file_has(tmp_path: Path, mode:
     if mode != "P":
         np.testing.assert_array_equal(found[..., :3], colours)
         np.testing.assert_array_equal(found[..., 3:], GREY[..., None] if mode == "RGBA" else np.zeros((2, 3, 0)))
-
-
-def test_a_mask_covers_where_any_colour_is_and_may_hold_ones() -> None:
-    picture = np.zeros((2, 3, 3), np.uint8)
-    picture[0, 1, 2], picture[1, 0, 1] = 200, 90
-    assert as_mask(picture)[..., 0].tolist() == [[0, 200, 0], [90, 0, 0]]
-    assert as_mask((picture > 0).astype(np.uint8))[..., 0].tolist() == [[0, 255, 0], [255, 0, 0]]
 
 
 def test_a_picture_that_lies_on_its_side_is_refused(tmp_path: Path) -> None:

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from captures import FRAMES, SIDE, looking, make_capture
+from captures import FRAMES, SIDE, make_capture
 from imageio_ffmpeg import get_ffmpeg_exe
 from PIL import Image
 
@@ -284,10 +284,3 @@ def test_names_a_frame_a_clip_and_a_number_of_rows_that_are_none(small_capture: 
     for rows in (0, 65):
         with pytest.raises(InputError, match=f"rows is {rows}; camera front has 64"):
             small_capture.view("walk", 0, "front", rows=rows)
-
-
-def test_cameras_stand_as_they_look() -> None:
-    position, target = np.array([1.0, 2, 3]), np.array([0.0, 1, 0])
-    matrix = looking(position, target)
-    np.testing.assert_allclose(matrix @ [*position, 1], [0, 0, 0, 1], atol=1e-12)
-    np.testing.assert_allclose((matrix @ [*target, 1])[:2], 0, atol=1e-12)

@@ -126,15 +126,6 @@ def test_steps_are_as_long_as_edges_and_longer_where_the_skin_changes(rig: Rig) 
     np.testing.assert_allclose(skinned, whole, rtol=0, atol=1e-5)
 
 
-def test_vertices_in_one_place_are_neighbours(rig: Rig) -> None:
-    mesh = rig.mesh
-    first = mesh.faces[0]
-    vertices = mesh.vertices.copy()
-    vertices[first[1]] = vertices[first[0]]
-    steps = surface_steps(replace(rig, mesh=replace(mesh, vertices=vertices)), skin_length=0)
-    assert 0 < steps[first[0], first[1]] < 1e-5
-
-
 def test_vertices_follow_nodes_that_move_as_they_do(rig: Rig) -> None:
     """The upper half of a tube hangs on one joint, the lower on another."""
     upper = rig.mesh.vertices[:, 1] > HEIGHT / 2

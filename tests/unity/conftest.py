@@ -51,10 +51,10 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return made
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def story(csharp: CSharp, component_program: Path, folder: Path) -> component.Story:
-    """What a story says, by its name and the names of avatars."""
-    return functools.partial(component.tell, csharp, component_program, folder)
+    """What a story says, by its name and the names of avatars; each is told once."""
+    return functools.cache(functools.partial(component.tell, csharp, component_program, folder))
 
 
 @pytest.fixture(scope="session")

@@ -125,20 +125,15 @@ def test_a_fault_of_a_kernel_fails_its_cases(
     assert ran.reports["exit"] == ["1"]
 
 
-def test_a_case_is_named_by_entry_point_and_content(story: Story) -> None:
-    names = [f"{case.kernel}/{case.name}" for case in story().cases]
-    assert len(set(names)) == CASES
-    assert {"mlp_matmul/MlpMatmul-f16-ReLU", "inverse_dwt/InverseDwt-bior4.4"} < set(names)
-
-
-def test_the_player_tests_every_kernel_that_has_golden_files(story: Story) -> None:
-    assert {case.kernel for case in story().cases} == set(gen_golden.CASES)
-
-
-def test_a_device_is_described_in_a_line(story: Story) -> None:
-    described = story().reports["Log"][0]
+def test_the_device_is_described_and_each_case_named_by_entry_point_and_content(story: Story) -> None:
+    ran = story()
+    described = ran.reports["Log"][0]
     assert described.startswith("MUA device: stand-in; ")
     assert "Vulkan" in described
+    names = [f"{case.kernel}/{case.name}" for case in ran.cases]
+    assert len(set(names)) == CASES
+    assert {"mlp_matmul/MlpMatmul-f16-ReLU", "inverse_dwt/InverseDwt-bior4.4"} < set(names)
+    assert {case.kernel for case in ran.cases} == set(gen_golden.CASES)
 
 
 def test_a_buffer_that_cannot_be_read_fails_its_case(story: Story) -> None:

@@ -1,7 +1,9 @@
 """AvatarRenderer spreads a decode over displayed frames: what each shows, bit for bit against decodes at once."""
 
 import json
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -33,33 +35,38 @@ class Shown:
     shadows: list[bool]  # whether it falls from the mesh that is shown
 
 
-class Watched:
-    """Plays a story twice and replays both on Vulkan."""
+Play = Callable[[str], tuple[Shown, Shown]]
 
-    def __init__(self, csharp: CSharp, program: Path, device: Device, folder: Path) -> None:
-        self._csharp, self._program, self._device, self._folder = csharp, program, device, folder
 
-    def play(self, story: str) -> tuple[Shown, Shown]:
-        """With the spread on, and off."""
-        file = self._folder / "first.muaavatar"
+@pytest.fixture(scope="module")
+def play(csharp: CSharp, component_program: Path, device: Device, tmp_path_factory: pytest.TempPathFactory) -> Play:
+    """Plays each story once with the spread on and once off, and replays both on Vulkan."""
+
+    @cache
+    def played(story: str) -> tuple[Shown, Shown]:
+        file = tmp_path_factory.mktemp(story) / "first.muaavatar"
         write(file, synthetic_avatar(1), storage="f16")
-        printed = self._csharp.run(self._program, ROOT / "ComputeShaders", story, file)
+        printed = csharp.run(component_program, ROOT / "ComputeShaders", story, file)
         reported = [line.split("\t", 1) for line in printed.splitlines()]
         assert ["alive", "0"] in reported
         sets = [int(value) for name, value in reported if name == "sets"]
         spread, at_once = (
-            self._shown(name, reported, count) for name, count in zip((SPREAD, AT_ONCE), sets, strict=True)
+            _shown(device, file.parent, name, reported, count)
+            for name, count in zip((SPREAD, AT_ONCE), sets, strict=True)
         )
         return spread, at_once
 
-    def _shown(self, name: str, reported: list[list[str]], sets: int) -> Shown:
-        dispatches = [int(value) for label, value in reported if label == name]
-        outside = [value for label, value in reported if label == f"outside {name}"]
-        splats = [int(value) for label, value in reported if label == f"splats {name}"]
-        recording = self._folder / f"first {name}"
-        kept = replay(self._device, recording).kept
-        pairs = [(kept[f"{i} mesh"], kept[f"{i} texel_channels"]) for i in range(FRAMES)]
-        return Shown(sets, dispatches, pairs, outside, splats, _shadows(recording.with_suffix(".json")))
+    return played
+
+
+def _shown(device: Device, folder: Path, name: str, reported: list[list[str]], sets: int) -> Shown:
+    dispatches = [int(value) for label, value in reported if label == name]
+    outside = [value for label, value in reported if label == f"outside {name}"]
+    splats = [int(value) for label, value in reported if label == f"splats {name}"]
+    recording = folder / f"first {name}"
+    kept = replay(device, recording).kept
+    pairs = [(kept[f"{i} mesh"], kept[f"{i} texel_channels"]) for i in range(FRAMES)]
+    return Shown(sets, dispatches, pairs, outside, splats, _shadows(recording.with_suffix(".json")))
 
 
 def _shadows(recording: Path) -> list[bool]:
@@ -74,11 +81,6 @@ def _shadows(recording: Path) -> list[bool]:
     return bound
 
 
-@pytest.fixture
-def watched(csharp: CSharp, component_program: Path, device: Device, tmp_path: Path) -> Watched:
-    return Watched(csharp, component_program, device, tmp_path)
-
-
 def alike(found: tuple[Array, Array], exact: tuple[Array, Array]) -> bool:
     return all(np.array_equal(*pair) for pair in zip(found, exact, strict=True))
 
@@ -88,10 +90,8 @@ def changes(shown: Shown) -> int:
 
 
 @pytest.mark.parametrize("story", ["SpreadsClip", "SpreadsBackwards"])
-def test_a_clip_shows_in_every_displayed_frame_what_is_due_and_no_frame_decodes_all(
-    watched: Watched, story: str
-) -> None:
-    spread, at_once = watched.play(story)
+def test_a_clip_shows_in_every_displayed_frame_what_is_due_and_no_frame_decodes_all(play: Play, story: str) -> None:
+    spread, at_once = play(story)
     assert changes(at_once) >= FRAMES // 3 - 1
     assert [alike(*pair) for pair in zip(spread.kept, at_once.kept, strict=True)] == [True] * FRAMES
     assert spread.outside == at_once.outside
@@ -101,15 +101,15 @@ def test_a_clip_shows_in_every_displayed_frame_what_is_due_and_no_frame_decodes_
     assert (spread.sets, at_once.sets) == (2, 1)
 
 
-def test_a_displayed_frame_of_two_cameras_decodes_one_part(watched: Watched) -> None:
-    spread, at_once = watched.play("SpreadsForTwoCameras")
+def test_a_displayed_frame_of_two_cameras_decodes_one_part(play: Play) -> None:
+    spread, at_once = play("SpreadsForTwoCameras")
     assert [alike(*pair) for pair in zip(spread.kept, at_once.kept, strict=True)] == [True] * FRAMES
     assert max(spread.dispatches[3:]) == 2 * POSED - 1 + max(map(len, PARTS_ORDER))  # posed once, sorted for each
 
 
-def test_another_level_comes_with_the_next_decode_and_makes_no_frame_decode_all(watched: Watched) -> None:
+def test_another_level_comes_with_the_next_decode_and_makes_no_frame_decode_all(play: Play) -> None:
     """What was begun at the old level is shown when it is due."""
-    spread, at_once = watched.play("SpreadsOverLevels")
+    spread, at_once = play("SpreadsOverLevels")
     assert len(set(at_once.splats)) == 2
     late = [spread.splats.index(min(at_once.splats)) - at_once.splats.index(min(at_once.splats))]
     late += [found[::-1].index(min(at_once.splats)) for found in (at_once.splats, spread.splats)]
@@ -121,35 +121,35 @@ def test_another_level_comes_with_the_next_decode_and_makes_no_frame_decode_all(
     assert {sum(frames) for frames in zip(*thirds, strict=False)} == {once}
 
 
-def test_another_level_does_not_discard_what_is_decoded_already(watched: Watched) -> None:
-    spread, at_once = watched.play("SpreadsOverLevelsOnSlowerDisplay")
+def test_another_level_does_not_discard_what_is_decoded_already(play: Play) -> None:
+    spread, at_once = play("SpreadsOverLevelsOnSlowerDisplay")
     assert len(set(spread.splats)) == 2
     assert max(at_once.dispatches[3:]) == len(FRAME_ORDER)
     assert max(spread.dispatches[3:]) < len(FRAME_ORDER)
 
 
-def test_a_shadow_falls_from_the_mesh_that_is_shown(watched: Watched) -> None:
+def test_a_shadow_falls_from_the_mesh_that_is_shown(play: Play) -> None:
     """But for the first frame that is due before it is whole, as there was no time to look ahead."""
-    spread, _ = watched.play("SpreadsClip")
+    spread, _ = play("SpreadsClip")
     assert spread.shadows[2:] == [True] * (FRAMES - 2)
 
 
 @pytest.mark.parametrize("story", ["SpreadsOnSlowDisplay", "SpreadsOverSeeks", "SpreadsRigOnSlowDisplay"])
-def test_what_cannot_be_spread_is_on_time_too(watched: Watched, story: str) -> None:
-    spread, at_once = watched.play(story)
+def test_what_cannot_be_spread_is_on_time_too(play: Play, story: str) -> None:
+    spread, at_once = play(story)
     assert [alike(*pair) for pair in zip(spread.kept, at_once.kept, strict=True)] == [True] * FRAMES
     assert max(spread.dispatches) <= len(FRAME_ORDER)
 
 
-def test_a_paused_clip_decodes_nothing_ahead(watched: Watched) -> None:
-    spread, at_once = watched.play("SpreadsOverSeeks")
+def test_a_paused_clip_decodes_nothing_ahead(play: Play) -> None:
+    spread, at_once = play("SpreadsOverSeeks")
     assert spread.dispatches[13] == spread.dispatches[16] == POSED - 1
     assert spread.dispatches[14] == len(FRAME_ORDER)  # sought
     assert spread.dispatches[12:17] == at_once.dispatches[12:17]
 
 
-def test_a_rig_is_shown_one_displayed_frame_late(watched: Watched) -> None:
-    spread, at_once = watched.play("SpreadsRig")
+def test_a_rig_is_shown_one_displayed_frame_late(play: Play) -> None:
+    spread, at_once = play("SpreadsRig")
     assert changes(at_once) >= FRAMES // 3 - 1
     assert alike(spread.kept[0], at_once.kept[0])
     late = zip(spread.kept[1:], at_once.kept, strict=False)
@@ -158,9 +158,9 @@ def test_a_rig_is_shown_one_displayed_frame_late(watched: Watched) -> None:
     assert max(spread.dispatches[1:]) == POSED + max(map(len, PARTS_ORDER))
 
 
-def test_a_rig_that_nobody_saw_for_a_while_shows_its_pose_of_now(watched: Watched) -> None:
+def test_a_rig_that_nobody_saw_for_a_while_shows_its_pose_of_now(play: Play) -> None:
     """Seen again in frame 10."""
-    spread, at_once = watched.play("SpreadsRigThatIsNotSeen")
+    spread, at_once = play("SpreadsRigThatIsNotSeen")
     assert alike(spread.kept[10], at_once.kept[10])
     assert not alike(spread.kept[10], spread.kept[9])
     late = zip(spread.kept[11:], at_once.kept[10:], strict=False)

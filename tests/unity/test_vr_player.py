@@ -19,14 +19,18 @@ Reports = dict[str, list[str]]
 Story = Callable[..., Reports]
 
 
-@pytest.fixture(scope="module", params=[True, False], ids=["input system", "input manager"])
+BOTH_INPUTS = pytest.mark.parametrize("program", [True, False], ids=["system", "manager"], indirect=True)
+
+
+@pytest.fixture(scope="module")
 def program(csharp: CSharp, request: pytest.FixtureRequest) -> Path:
-    """The sample and its editor part with the test's program, for each of Unity's two input systems."""
-    compiler = Compiler(csharp, "editor", packages=request.param)
+    """The sample and its editor part with the test's program, for either of Unity's two input systems."""
+    packages = getattr(request, "param", True)
+    compiler = Compiler(csharp, "editor", packages=packages)
     sample, editor = assemblies()["Mua.Samples.VrPlayer"], assemblies()["Mua.Samples.VrPlayer.Editor"]
-    names = ["UnityEngine", "UnityEditor", *(["Unity.InputSystem", "Unity.XR.MetaOpenXR"] if request.param else [])]
+    names = ["UnityEngine", "UnityEditor", *(["Unity.InputSystem", "Unity.XR.MetaOpenXR"] if packages else [])]
     references = [compiler.built(name) for name in (*names, "Mua.Format", "Mua.Motion", "Mua.Avatar")]
-    defines = sample.defines("editor", packages=request.param)
+    defines = sample.defines("editor", packages=packages)
     sources = [*sample.sources(), *editor.sources(), PROGRAMS / "shared", *sorted(PROGRAMS.glob("Player*.cs"))]
     return csharp.build(sources, name="PlayerProgram", references=references, defines=defines)
 
@@ -79,6 +83,14 @@ def test_the_scene_has_what_the_player_needs(story: Story) -> None:
     assert reported["camera"] == ["False False SolidColor MainCamera"]
     assert (reported["ground"], reported["avatars"]) == (["True"], ["True"])
     assert reported["faces"] == ["0.00 0.00 -1.00, the user at 0.00 0.00 -2.20"]
+    assert (reported["eyes"], reported["sees"]) == (["1.60"], ["0.05 to 100"])
+    assert reported["light falls"] == ["-0.32 -0.77 0.56"]
+    assert reported["Panel stands"] == ["-1.60 1.90 0.20 faces -0.50 0.00 0.87"]
+    assert reported["Help stands"] == ["0.70 1.90 0.20 faces 0.50 0.00 0.87"]
+    assert reported["letters"] == ["0.0280 UpperLeft", "0.0280 UpperLeft"]
+    for action in ("walk", "turn", "zoom", "scrub", "play, pause", "next clip", "previous clip", "back to the start"):
+        for named in (reported["help"][0], (SAMPLE / "README.md").read_text()):
+            assert action in named
     assert reported["log"] == []
 
 
@@ -90,6 +102,7 @@ def test_letters_are_drawn_by_a_shader_that_tests_depth(story: Story) -> None:
     assert reported["log"] == []
 
 
+@BOTH_INPUTS
 def test_keys_do_what_the_table_says(story: Story) -> None:
     reported = story("Keys")
     assert reported == {
@@ -188,15 +201,6 @@ def test_numbers_are_written_digit_by_digit(csharp: CSharp, program: Path, folde
     assert written == "0 0.0; 9 9.0; 10 10.0; 100 100.0; 100 100.0; 101 101.0; 1000 1000.0; 7 7.3; - -; - -"
 
 
-def test_the_texts_stand_on_either_side_and_turn_to_the_user(story: Story) -> None:
-    reported = story("Furniture", files=())
-    assert (reported["eyes"], reported["sees"]) == (["1.60"], ["0.05 to 100"])
-    assert reported["light falls"] == ["-0.32 -0.77 0.56"]
-    assert reported["Panel"] == ["-1.60 1.90 0.20 faces -0.50 0.00 0.87"]
-    assert reported["Help"] == ["0.70 1.90 0.20 faces 0.50 0.00 0.87"]
-    assert reported["letters"] == ["0.0280 UpperLeft", "0.0280 UpperLeft"]
-
-
 def test_where_no_avatars_are_streamed_there_is_no_index(story: Story) -> None:
     reported = story("Index", files=())
     assert (reported["of nothing"], reported["of what is gone"], reported["nowhere"]) == (
@@ -211,6 +215,7 @@ def test_a_headset_that_is_taken_off_is_set_up_again_when_it_comes_back(story: S
     assert (reported["worn"], reported["taken off"], reported["worn again"]) == (["True"], ["False"], ["True 0.5"])
 
 
+@BOTH_INPUTS
 def test_a_headset_gives_pose_floor_and_rate(story: Story) -> None:
     reported = story("Headset")
     assert reported["head"] == ["0.50 1.80 -1.95 looks 1.00 0.00 0.00"]
@@ -244,6 +249,7 @@ def test_the_panel_says_what_is_shown_and_how_fast(story: Story, folder: Path) -
     ]
 
 
+@BOTH_INPUTS
 def test_a_frame_allocates_nothing_and_a_second_two_texts(story: Story) -> None:
     reported = story("Allocates")
     assert reported["texts"] == ["4"]
@@ -310,10 +316,3 @@ def test_the_player_begins_with_the_avatar_it_is_told(story: Story) -> None:
     reported = story("Goes", "-muaAvatar", "third")
     assert reported["state"] == ["Ready first"]
     assert "No avatar is called third." in reported["panel"][0]
-
-
-def test_the_page_of_buttons_and_the_readme_name_the_same_actions(story: Story) -> None:
-    page, readme = story("Scene", files=())["help"][0], (SAMPLE / "README.md").read_text()
-    for action in ("walk", "turn", "zoom", "scrub", "play, pause", "next clip", "previous clip", "back to the start"):
-        assert action in page
-        assert action in readme

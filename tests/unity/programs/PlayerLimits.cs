@@ -1,4 +1,4 @@
-// How far the user of the VR player can go, and how the scene is furnished: another part of PlayerProgram.cs.
+// How far the user of the VR player can go: another part of PlayerProgram.cs.
 using System.IO;
 using StandIns;
 using UnityEngine;
@@ -69,21 +69,6 @@ namespace Mua.Samples.VrPlayer
                 text.Add(number, 0).Add(" ").Add(number, 1).Add("; ");
             }
             Say("numbers", text);
-        }
-
-        private static void Furniture()
-        {
-            Make();
-            Say("eyes", head.transform.localPosition.y.ToString("0.00"));
-            Say("sees", head.nearClipPlane.ToString("0.00") + " to " + head.farClipPlane.ToString("0"));
-            Say("light falls", Format(Object.FindAnyObjectByType<Light>().transform.forward));
-            foreach (string name in new[] { "Panel", "Help" })
-            {
-                Transform at = GameObject.Find(name).transform;
-                var text = at.GetComponent<TextMesh>();
-                Say(name, Format(at.position) + " faces " + Format(at.forward));
-                Say("letters", (0.1f * text.fontSize * text.characterSize).ToString("0.0000") + " " + text.anchor);
-            }
         }
 
         /// <summary>The index of an empty StreamingAssets, of none, and of one that lost its avatars.</summary>

@@ -70,6 +70,16 @@ namespace Mua.Samples.VrPlayer
                 .GetValue(user.GetComponent<VrPlayer>());
             Say("avatars", given[0] == assets[1] && given[1] == assets[0] && given.Length == 2);
             Say("help", GameObject.Find("Help").GetComponent<TextMesh>().text.Replace('\n', '|'));
+            Say("eyes", head.transform.localPosition.y.ToString("0.00"));
+            Say("sees", head.nearClipPlane.ToString("0.00") + " to " + head.farClipPlane.ToString("0"));
+            Say("light falls", Format(light.transform.forward));
+            foreach (string name in new[] { "Panel", "Help" })
+            {
+                Transform at = GameObject.Find(name).transform;
+                var text = at.GetComponent<TextMesh>();
+                Say(name + " stands", Format(at.position) + " faces " + Format(at.forward));
+                Say("letters", (0.1f * text.fontSize * text.characterSize).ToString("0.0000") + " " + text.anchor);
+            }
         }
 
         /// <summary>The shader of the panel's letters, and whether they are those of the font.</summary>

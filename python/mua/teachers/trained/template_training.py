@@ -8,14 +8,12 @@ killed run resumes from its last checkpoint and ends in the same bytes.
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
-from pathlib import Path
 from typing import Protocol
 
 import torch
 from torch import Tensor, nn
 
 from mua.pose.encoding import PoseEncoding
-from mua.rig.bones import figure_scale
 from mua.rig.rig import Rig
 from mua.teachers.trained.drivable_template import DrivableTemplate
 from mua.teachers.trained.mesh_losses import Cloud, Samples, chamfer, edges_of, roughness
@@ -23,9 +21,7 @@ from mua.teachers.trained.motion_deformation import Deformed, GraphSizes, Motion
 from mua.teachers.trained.parameters import deterministic, gradients_for
 from mua.teachers.trained.silhouette import Outline, silhouette_error
 from mua.teachers.trained.track_losses import Tracks, track_error
-from mua.training.checkpoint import Checkpoints, run_key
-from mua.training.optimise import Report, Run, optimise
-from mua.training.processes import ALONE, Processes
+from mua.training.optimise import Run, optimise
 from mua.training.schedule import Schedule
 
 STAGES = ("template nodes", "template offsets")
@@ -88,29 +84,6 @@ class Observations(Protocol):
 def template_of(rig: Rig, encoding: PoseEncoding, settings: TemplateSettings) -> DrivableTemplate:
     """A template that is not trained yet: skinning alone moves it."""
     return DrivableTemplate(rig, MotionDeformation(rig, encoding, settings.sizes))
-
-
-def training_run(
-    observations: Observations,
-    rig: Rig,
-    encoding: PoseEncoding,
-    settings: TemplateSettings,
-    *,
-    directory: Path,
-    report: Report,
-    device: torch.device | None = None,
-    processes: Processes = ALONE,
-) -> Run:
-    """The run that the stages of this training share; its key distinguishes it from others in the same directory."""
-    key = run_key((settings, encoding), [observations.descriptors, observations.joints])
-    return Run(
-        torch.Generator().manual_seed(settings.seed),
-        Checkpoints(directory, key, processes),
-        report,
-        device or torch.device("cpu"),
-        processes,
-        figure_scale(rig.mesh.vertices),
-    )
 
 
 def fit_template(
