@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from people import upright
-from synthetic_avatar import synthetic_avatar, synthetic_clip
 
 from mua import rotation
 from mua.errors import InputError
@@ -122,13 +121,3 @@ def test_several_roots_are_refused() -> None:
     clip = Clip("a", 30.0, skeleton.bind_rotations[None], skeleton.bind_translations[None])
     with pytest.raises(InputError, match=r"the skeleton has 2 joints without a parent \(a, b\); a \.bvh holds one"):
         bvh_text(skeleton, clip)
-
-
-def test_a_synthetic_avatars_clip_goes_there_and_back(tmp_path: Path) -> None:
-    skeleton = synthetic_avatar().rig.skeleton
-    clip = synthetic_clip(skeleton, np.random.default_rng(1), frames=5)
-    (tmp_path / "a.bvh").write_text(bvh_text(skeleton, clip))
-    read = read_bvh(tmp_path / "a.bvh", scale=1.0)
-    _, placed = skeleton.world(clip.rotations, clip.translations)
-    _, found = read.skeleton.world(read.clip.rotations, read.clip.translations)
-    np.testing.assert_allclose(found[:, :3], placed, atol=PLACE_BOUND)

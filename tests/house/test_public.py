@@ -149,7 +149,7 @@ WRONG_OPTIONS: dict[str, tuple[dict[str, Any], str]] = {
     "motion": ({"motion": ["a.bvh", None]}, "motion is None; expected a path"),
     "absent motion": ({"motion": "none.bvh"}, r"--motion none\.bvh: there is no such file or directory"),
     "output": ({"output": "a.glb"}, r"-o a\.glb: expected a name that ends in \.muaavatar"),
-    "preset": ({"preset": "huge"}, "preset: 'huge' is unknown, expected one of tiny"),
+    "preset": ({"preset": "huge"}, "preset: 'huge' is unknown, expected one of tiny, preview, paper"),
     "frames": ({"frames": "many"}, "frames is 'many'; expected a whole number"),
     "no frames": ({"frames": 0}, "--frames 0: expected at least 1"),
     "texels": ({"texels": 100}, "--texels 100: expected a multiple of 16 from 32 on"),

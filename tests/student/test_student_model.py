@@ -5,7 +5,6 @@ import pytest
 import torch
 from synthetic_student import random_student
 
-from mua.errors import InputError
 from mua.pose.descriptor import groups_of
 from mua.pose.encoding import PoseEncoding
 from mua.student.model import Student, build_mlp
@@ -55,8 +54,3 @@ def test_mlps_have_two_hidden_layers() -> None:
 @pytest.mark.parametrize("settings", PRESETS.values(), ids=PRESETS)
 def test_preset_sizes_halve_four_times(settings: Settings) -> None:
     assert settings.texels % 16 == 0
-
-
-def test_rejects_an_unknown_preset() -> None:
-    with pytest.raises(InputError, match="'huge' is unknown, expected one of tiny, preview, paper"):
-        preset("huge")
