@@ -1,12 +1,8 @@
 """The order of a frame's dispatches, and how far a frame on the GPU may be from the reference."""
 
-from dataclasses import replace
-from typing import Any
-
 import numpy as np
 
 from mua.arrays import Array
-from mua.asset.avatar import Avatar
 
 # Metres. Offsets from the mesh, up to 125 mm here, are half floats, rounded either way along three axes; float32 leaves
 # a hundredth of it on a person two metres from the origin.
@@ -36,19 +32,3 @@ FRAME_ORDER = [
 def psnr(image: Array, exact: Array) -> float:
     """Decibels below 1; two images that are both empty agree by 120."""
     return float(-10 * np.log10(np.maximum(np.mean((image - exact) ** 2), 1e-12)))
-
-
-def part(avatar: Avatar, kept: slice) -> Avatar:
-    """The avatar with only some of its texels."""
-    texels = avatar.rig.texels
-    fewer = replace(
-        texels,
-        texels=texels.texels[kept],
-        triangles=texels.triangles[kept],
-        barycentrics=texels.barycentrics[kept],
-    )
-    branches: dict[str, Any] = {
-        name: replace(branch, static=branch.static[:, kept])
-        for name, branch in (("geometry", avatar.geometry), ("appearance", avatar.appearance))
-    }
-    return replace(avatar, rig=replace(avatar.rig, texels=fewer), **branches)

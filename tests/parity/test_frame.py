@@ -12,11 +12,10 @@ from frame_bounds import (
     LEAST_PSNR,
     OPACITY_BOUND,
     POSITION_BOUND,
-    part,
     psnr,
 )
 from frame_errors import PosedFrame
-from synthetic_avatar import sparse_avatar, synthetic_avatar, with_random_poses
+from synthetic_avatar import sparse_avatar, synthetic_avatar, with_random_poses, with_texels
 
 from mua.arrays import Array
 from mua.asset import write
@@ -246,7 +245,7 @@ def test_depth_is_keyed_over_the_references_box(device: Device, tmp_path: Path) 
 
 @pytest.mark.parametrize("count", [0, 1, 2])
 def test_an_avatar_of_few_texels_is_drawn(device: Device, tmp_path: Path, count: int) -> None:
-    few = part(synthetic_avatar(), slice(300, 300 + count))
+    few = with_texels(synthetic_avatar(), slice(300, 300 + count))
     frame = opened(device, few, tmp_path)
     posed = decode_clip_frame(frame.avatars[0].avatar.avatar, few.clips[0], frame=0)
     camera = orbit(synthetic_avatar().bounds, screen=(96, 64))

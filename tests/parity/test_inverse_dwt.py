@@ -87,31 +87,16 @@ def test_static_offset_lands_on_its_texels() -> None:
     np.testing.assert_array_equal(found, [[100, 205, 308], [9, 14, 18]])
 
 
-@pytest.mark.parametrize("levels", [0, 1, 2, 3])
-@pytest.mark.parametrize("name", ["bior1.1", "bior3.1", "bior4.4", "bior6.8"])
-def test_low_pass_levels_are_one_filter(name: str, levels: int) -> None:
-    lo = taps(name)[0]
-    filtered, delay = upsampling_taps(lo, levels)
-    factor = 1 << levels
-    assert filtered.shape[1] == factor
-    assert filtered[0].any()
-    assert filtered[-1].any()
-    for side in (1, 2, 5):
-        samples = np.random.default_rng(side).normal(size=side)
-        expected = samples
-        for _ in range(levels):
-            expected = pywt.idwt(expected, None, name, "periodization")
-        newest, phases = np.divmod(np.arange(factor * side) + delay, factor)
-        found = sum(filtered[j, phases] * samples[(newest - j) % side] for j in range(len(filtered)))
-        np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12)
+LOW_PASSES = [(0, 0), (1, 0), (2, 0), (3, 0), (1, 1), (2, 1), (2, 2), (3, 1)]
 
 
-@pytest.mark.parametrize(("levels", "coarser"), [(1, 1), (2, 1), (2, 2), (3, 1)])
+@pytest.mark.parametrize(("levels", "coarser"), LOW_PASSES)
 @pytest.mark.parametrize("name", ["bior1.1", "bior3.1", "bior4.4", "bior6.8"])
-def test_means_of_low_pass_levels_are_one_filter(name: str, levels: int, coarser: int) -> None:
+def test_low_pass_levels_and_means_of_them_are_one_filter(name: str, levels: int, coarser: int) -> None:
     filtered, delay = upsampling_taps(taps(name)[0], levels, coarser)
     factor, means = 1 << levels - coarser, 1 << coarser
     assert filtered.shape[1] == factor
+    assert coarser or (filtered[0].any() and filtered[-1].any())
     for side in (1, 2, 5):
         samples = np.random.default_rng(side).normal(size=side)
         expected = samples

@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from frame_bounds import COLOR_BOUND, LEAST_PSNR, OPACITY_BOUND, POSITION_BOUND, part, psnr
+from frame_bounds import COLOR_BOUND, LEAST_PSNR, OPACITY_BOUND, POSITION_BOUND, psnr
 from frame_errors import exact_colors
 from joined_splats import joined, moved
 from packed_splats import colors_of, opacities_of, unpacked
 from splat_rounding import exact_keys
-from synthetic_avatar import synthetic_avatar
+from synthetic_avatar import synthetic_avatar, with_texels
 
 from mua import rotation
 from mua.arrays import Array
@@ -44,7 +44,8 @@ PLACES = (turned(0, (0, 0, 0)), turned(1.2, (0.35, 0.1, -0.2)), turned(-2.5, (-0
 
 def three() -> list[Avatar]:
     """Of three sizes, so that none starts at a whole group."""
-    return [synthetic_avatar(1), part(synthetic_avatar(2), slice(0, 301)), part(synthetic_avatar(3), slice(100, 457))]
+    kept = (slice(None), slice(0, 301), slice(100, 457))
+    return [with_texels(synthetic_avatar(seed), own) for seed, own in enumerate(kept, 1)]
 
 
 class Crowd:
@@ -125,7 +126,7 @@ def test_the_picture_agrees_with_the_cpu_rasteriser(crowd: Crowd) -> None:
 
 def test_an_avatar_without_texels_stands_among_others(device: Device, tmp_path: Path) -> None:
     avatars = three()
-    crowd = Crowd(device, tmp_path, [avatars[0], part(avatars[1], slice(0, 0)), avatars[2]], eyes=1)
+    crowd = Crowd(device, tmp_path, [avatars[0], with_texels(avatars[1], slice(0, 0)), avatars[2]], eyes=1)
     np.testing.assert_array_equal(np.sort(crowd.order), np.arange(len(crowd.exact.centres)))
 
 

@@ -6,15 +6,17 @@ from typing import Any
 
 import numpy as np
 import wgpu
+from csharp import RUNTIME
 from replay import Drawn, value
-from shader_programs import Program
+from shader_programs import VARIANTS, Program, programs
 
 from mua.arrays import Array
 from mua.gpu import Device
 from mua.gpu.draw import Pipeline
-from mua.player.draw import read_image
+from mua.player.draw import image_format, read_image
 
 DEPTH_FORMAT = "depth32float"
+GAMMA = ("UNITY_COLORSPACE_GAMMA",)
 UNITY_TESTS = {"LEqual": "greater-equal", "Always": "always"}  # the device's depth runs from 1 to 0
 UNITY_BLENDS = {"One OneMinusSrcAlpha": True, "Off": False}
 PLANE = """
@@ -127,3 +129,29 @@ def rows(*, turned: bool) -> dict[str, Array]:
     """The engine's projections for a target that it turns upside down, or not; of their other values none is read."""
     projection = np.diag([1.7, -2.3 if turned else 2.3, 0, 0])
     return {"glstate_matrix_projection": projection, "unity_StereoMatrixP": np.stack([projection, projection])}
+
+
+class UnityPainter:
+    """Draws the passes of a shader of the package as Unity would."""
+
+    def __init__(self, device: Device, folder: Path, shader: str, size: tuple[int, int]) -> None:
+        self.device, self.folder, self.size, self.format = device, folder, size, image_format(device)
+        self.passes = {program.index: program for program in programs(RUNTIME / "Shaders" / shader)}
+
+    def unity(
+        self,
+        drawn: Drawn,
+        *,
+        variant: str = "mono",
+        space: tuple[str, ...] = GAMMA,
+        turned: bool = False,
+        plane: float | None = None,  # depth on the device, over the left half of the target
+        **engine: Any,
+    ) -> Array:
+        """[H, W, 4] of one eye, rows as the target stores them."""
+        defines = (*VARIANTS[variant], *space)
+        draw = UnityDraw(self.device, drawn, self.passes[drawn.pass_index], self.folder, defines, self.format)
+        target = Target(self.device, self.format, self.size, 0.0, self.folder)
+        half = None if plane is None else (plane, (0, 0, self.size[0] // 2, self.size[1]))
+        given = {"unity_StereoEyeIndex": 0, **rows(turned=turned), **engine}
+        return target.image(lambda render_pass: draw.draw(render_pass, **given), half)

@@ -1,14 +1,13 @@
 """AvatarRenderer in a player loop of stand-ins: what it shows beside others, and what that costs."""
 
 import json
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from component import Story, counts
 from frame_bounds import FRAME_ORDER
-from synthetic_avatar import synthetic_avatar, with_surface
+from synthetic_avatar import synthetic_avatar, with_surface, with_texels
 
 from mua.asset import write
 
@@ -55,14 +54,8 @@ def test_views_are_drawn_in_their_order(story: Story) -> None:
 
 
 def test_an_avatar_of_two_texels_has_no_geometry_and_shows_the_rest(story: Story, folder: Path) -> None:
-    avatar = synthetic_avatar(1)
-    texels = avatar.rig.texels
-    few = replace(
-        texels, texels=texels.texels[:2], triangles=texels.triangles[:2], barycentrics=texels.barycentrics[:2]
-    )
-    geometry, appearance = (replace(b, static=b.static[:, :2]) for b in (avatar.geometry, avatar.appearance))
-    avatar = replace(avatar, rig=replace(avatar.rig, texels=few), geometry=geometry, appearance=appearance)
-    write(folder / "sparse.muaavatar", with_surface(avatar), storage="f16")
+    few = with_texels(synthetic_avatar(1), slice(2))
+    write(folder / "sparse.muaavatar", with_surface(few), storage="f16")
     reported = story("ShowsSparse", "sparse")
     assert reported["order"] == ["Hidden/MUA/Surface 1", "Hidden/MUA/Splat 0", "Hidden/MUA/Surface 2"]
     assert reported["log"] == []

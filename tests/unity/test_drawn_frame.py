@@ -7,18 +7,17 @@ import base64
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
 import wgpu
-from csharp import ROOT, RUNTIME, CSharp
-from drawn import DEPTH_FORMAT, Target, UnityDraw, rows
+from csharp import ROOT, CSharp
+from drawn import DEPTH_FORMAT, GAMMA, Target, UnityPainter
 from engine_shaders import Engine
 from packed_splats import colors_of, opacities_of, unpacked
 from recorded_frames import eye_lines
 from replay import Drawn, replay, value
-from shader_programs import VARIANTS, programs
 from synthetic_avatar import synthetic_avatar
 
 from mua.arrays import Array
@@ -28,14 +27,13 @@ from mua.avatar.decode import decode_clip_frame
 from mua.gpu import Device
 from mua.gpu.reflect import Constant
 from mua.kernels.splat_project import pack_colors
-from mua.player.draw import SortedSplats, SplatRenderer, image_format
+from mua.player.draw import SortedSplats, SplatRenderer
 
 if TYPE_CHECKING:
     from layers import LayeredDevice
 
 SCREEN = (160, 200)
 LEAST_PSNR = 80.0  # dB where splats are; matrices are rounded to float32 on another way
-GAMMA = ("UNITY_COLORSPACE_GAMMA",)
 FRAME_AT = 3 / 24  # seconds into a clip of 24 Hz
 MODES = ("indirect", "direct")
 STEREO = ("multiview", "instanced")
@@ -112,33 +110,11 @@ def layered() -> "Iterator[LayeredDevice]":
 
 @pytest.fixture
 def painter(device: Device, tmp_path: Path) -> "Painter":
-    return Painter(device, tmp_path)
+    return Painter(device, tmp_path, "splat.shader", SCREEN)
 
 
-class Painter:
-    """Draws scenes as Unity would and as the desktop player does."""
-
-    def __init__(self, device: Device, folder: Path) -> None:
-        self.device, self.folder, self.format = device, folder, image_format(device)
-        self.passes = {program.index: program for program in programs(RUNTIME / "Shaders" / "splat.shader")}
-
-    def unity(
-        self,
-        drawn: Drawn,
-        *,
-        variant: str = "mono",
-        space: tuple[str, ...] = GAMMA,
-        turned: bool = False,
-        plane: float | None = None,  # depth on the device, over the left half of the target
-        **engine: Any,
-    ) -> Array:
-        """[H, W, 4] of one eye, rows as the target stores them."""
-        defines = (*VARIANTS[variant], *space)
-        draw = UnityDraw(self.device, drawn, self.passes[drawn.pass_index], self.folder, defines, self.format)
-        target = Target(self.device, self.format, SCREEN, 0.0, self.folder)
-        half = None if plane is None else (plane, (0, 0, SCREEN[0] // 2, SCREEN[1]))
-        given = {"unity_StereoEyeIndex": 0, **rows(turned=turned), **engine}
-        return target.image(lambda render_pass: draw.draw(render_pass, **given), half)
+class Painter(UnityPainter):
+    """Draws scenes as the desktop player does, too."""
 
     def player(
         self, scene: Scene, *, splats: Array | None = None, plane: tuple[int, float] | None = None

@@ -13,7 +13,6 @@ from frame_bounds import (
     LEAST_PSNR,
     OPACITY_BOUND,
     POSITION_BOUND,
-    part,
     psnr,
 )
 from frame_errors import exact_colors, exact_depths
@@ -23,7 +22,7 @@ from packed_splats import colors_of, opacities_of, unpacked
 from recorded_frames import eye_lines, place_of
 from replay import Replayed, replay
 from splat_rounding import exact_keys
-from synthetic_avatar import synthetic_avatar, with_random_poses
+from synthetic_avatar import synthetic_avatar, with_random_poses, with_texels
 from training import outside_of_training
 
 from mua import rotation
@@ -147,8 +146,8 @@ def recorded(
     count, storage = request.param
     avatars = [
         synthetic_avatar(1),
-        part(synthetic_avatar(2, wavelet="bior3.1"), slice(0, 301)),  # whose filter of 4 taps has an odd delay
-        part(synthetic_avatar(3, levels=5), slice(100, 457)),  # whose lowest plane is a single sample
+        with_texels(synthetic_avatar(2, wavelet="bior3.1"), slice(0, 301)),  # whose filter of 4 taps has an odd delay
+        with_texels(synthetic_avatar(3, levels=5), slice(100, 457)),  # whose lowest plane is a single sample
     ]
     return Recorded(csharp, frame_program, device, tmp_path_factory.mktemp("recorded"), avatars[:count], storage)
 

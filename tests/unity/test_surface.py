@@ -12,12 +12,11 @@ import numpy as np
 import pytest
 import rasterised
 import wgpu
-from csharp import PROGRAMS, ROOT, RUNTIME, CSharp
-from drawn import DEPTH_FORMAT, Target, UnityDraw, rows
+from csharp import PROGRAMS, ROOT, CSharp
+from drawn import DEPTH_FORMAT, Target, UnityPainter
 from rasterised import STROKES_BOUND, SURFACE_BOUND, Picture, Stroke, Wall, compare
 from recorded_frames import eye_lines, place_of
 from replay import Drawn, replay, value
-from shader_programs import VARIANTS, programs
 from synthetic_avatar import sparse_avatar, synthetic_avatar, with_surface
 
 from mua import rotation
@@ -27,7 +26,6 @@ from mua.asset.avatar import Avatar
 from mua.avatar.camera import EYE_DISTANCE, Camera, orbit, stereo
 from mua.avatar.decode import decode_clip_frame
 from mua.gpu import Device
-from mua.player.draw import image_format
 from mua.player.overlays import (
     BONE_COLOR,
     BONE_WIDTH,
@@ -41,7 +39,6 @@ from mua.player.overlays import (
 from mua.player.surface import surface_mesh
 
 SCREEN = (160, 200)
-GAMMA = ("UNITY_COLORSPACE_GAMMA",)
 FRAME = 3  # a frame of the clip at 24 Hz
 PLACE = (0.35, 0.1, -0.2, 0.1, 0.5, -0.1, 0.85446, 0.8)  # Unity's position, then rotation (x, y, z, w), then size
 PASSES = ("Geometry", "Template", "Skeleton", "ShadowCaster")
@@ -122,32 +119,19 @@ def painter(device: Device, tmp_path: Path, scene: Scene) -> "Painter":
     return Painter(device, tmp_path, scene)
 
 
-class Painter:
-    """Draws the passes as Unity would and as the desktop player does."""
+class Painter(UnityPainter):
+    """Draws views of a scene, as numpy does, too."""
 
     def __init__(self, device: Device, folder: Path, scene: Scene) -> None:
-        self.device, self.folder, self.scene, self.format = device, folder, scene, image_format(device)
-        self.passes = {program.name: program for program in programs(RUNTIME / "Shaders" / "surface.shader")}
+        super().__init__(device, folder, "surface.shader", SCREEN)
+        self.scene = scene
 
-    def unity(
-        self,
-        name: str,
-        *,
-        variant: str = "mono",
-        space: tuple[str, ...] = GAMMA,
-        turned: bool = False,
-        plane: float | None = None,  # depth on the device, over the left half of the target
-        **engine: Any,
-    ) -> Array:
+    def view(self, name: str, *, variant: str = "mono", **more: Any) -> Array:
         """[H, W, 4] of one eye, rows as the target stores them."""
         drawn = self.scene.drawn[name]
         if variant == "instanced":
             drawn = replace(drawn, arguments=(drawn.arguments[0], 2))  # as the engine multiplies it
-        defines = (*VARIANTS[variant], *space)
-        draw = UnityDraw(self.device, drawn, self.passes[name], self.folder, defines, self.format)
-        target = Target(self.device, self.format, SCREEN, 0.0, self.folder)
-        given = {"unity_StereoEyeIndex": 0, **rows(turned=turned), **engine}
-        return target.image(lambda render_pass: draw.draw(render_pass, **given), half(plane))
+        return self.unity(drawn, variant=variant, **more)
 
     def expected(self, name: str, eye: int, *, wall: Wall | None = None) -> Picture:
         """What numpy draws of the posed avatar where it stands."""
@@ -181,11 +165,6 @@ def placed(points: Array) -> Array:
     return rotation.dual_transform(place_of(PLACE), PLACE[-1] * points)
 
 
-def half(plane: float | None) -> tuple[float, tuple[int, int, int, int]] | None:
-    """A depth over the left half of the target."""
-    return None if plane is None else (plane, (0, 0, SCREEN[0] // 2, SCREEN[1]))
-
-
 def agree(found: Array, expected: Picture, name: str) -> None:
     compare(found, expected, STROKES_BOUND if name == "Skeleton" else SURFACE_BOUND)
 
@@ -193,7 +172,7 @@ def agree(found: Array, expected: Picture, name: str) -> None:
 @pytest.mark.parametrize("turned", [False, True], ids=["back buffer", "texture"])
 @pytest.mark.parametrize("name", VIEWS)
 def test_each_view_is_as_numpy_draws_it(painter: Painter, name: str, turned: bool) -> None:
-    found = painter.unity(name, turned=turned)
+    found = painter.view(name, turned=turned)
     agree(found[::-1] if turned else found, painter.expected(name, 0), name)
 
 
@@ -201,11 +180,11 @@ def test_each_view_is_as_numpy_draws_it(painter: Painter, name: str, turned: boo
 @pytest.mark.parametrize("name", VIEWS)
 def test_each_stereo_mode_draws_its_eye(painter: Painter, name: str, eye: int) -> None:
     expected = painter.expected(name, eye)
-    agree(painter.unity(name, variant="instanced", replayed_layer=eye), expected, name)
-    agree(painter.unity(name, variant="multiview", replayed_view=eye), expected, name)
-    agree(painter.unity(name, unity_StereoEyeIndex=eye), expected, name)
+    agree(painter.view(name, variant="instanced", replayed_layer=eye), expected, name)
+    agree(painter.view(name, variant="multiview", replayed_view=eye), expected, name)
+    agree(painter.view(name, unity_StereoEyeIndex=eye), expected, name)
     with pytest.raises(AssertionError, match="pixels"):
-        agree(painter.unity(name, unity_StereoEyeIndex=1 - eye), expected, name)
+        agree(painter.view(name, unity_StereoEyeIndex=1 - eye), expected, name)
 
 
 @pytest.mark.parametrize("name", VIEWS)
@@ -214,9 +193,9 @@ def test_depth_hides_surfaces_but_no_bones(painter: Painter, name: str) -> None:
     camera = painter.scene.cameras[0]
     centres = placed(posed(painter.scene.avatar).centres)
     distance = -(centres @ camera.view[2, :3] + camera.view[2, 3]).mean()
-    found = painter.unity(name, plane=depth_at(camera, distance))
+    found = painter.view(name, plane=depth_at(camera, distance))
     agree(found, painter.expected(name, 0, wall=Wall(distance)), name)
-    assert np.array_equal(found, painter.unity(name)) == (name == "Skeleton")
+    assert np.array_equal(found, painter.view(name)) == (name == "Skeleton")
 
 
 def depth_at(camera: Camera, distance: float) -> float:
@@ -240,7 +219,7 @@ def test_a_surface_yields_a_centimetre_to_what_lies_on_it(painter: Painter) -> N
     depth = middles[facet] @ normal / (ray @ normal)  # where the ray through the pixel's middle meets the facet
     seen = []
     for behind in (0.005, 0.015):
-        image = painter.unity("Template", plane=depth_at(camera, depth + behind))
+        image = painter.view("Template", plane=depth_at(camera, depth + behind))
         seen.append(bool(image[rows[facet], columns[facet], 3]))
     assert seen == [False, True]
 
@@ -249,12 +228,12 @@ def test_a_surface_yields_a_centimetre_to_what_lies_on_it(painter: Painter) -> N
 def test_a_linear_project_is_given_light(painter: Painter, name: str) -> None:
     srgb = painter.expected(name, 0)
     image = np.concatenate([light_of(srgb.image[..., :3]), srgb.image[..., 3:]], axis=-1)
-    agree(painter.unity(name, space=()), Picture(image, STEEPEST * srgb.spread), name)
+    agree(painter.view(name, space=()), Picture(image, STEEPEST * srgb.spread), name)
 
 
 def test_a_linear_project_blends_the_light_of_bones(painter: Painter) -> None:
     lit = [replace(stroke, color=tuple(light_of(np.array(stroke.color)))) for stroke in painter.strokes()]
-    agree(painter.unity("Skeleton", space=()), rasterised.strokes(painter.scene.cameras[0], lit), "Skeleton")
+    agree(painter.view("Skeleton", space=()), rasterised.strokes(painter.scene.cameras[0], lit), "Skeleton")
 
 
 def light_of(srgb: Array) -> Array:
@@ -274,7 +253,8 @@ def light_from(axis: int, span: float, middle: float = 0) -> Array:
 
 def shadow_depths(painter: Painter, matrix: Array) -> Array:
     """[MAP, MAP] depth of the vertices that the shadow pass draws as points; 0 where there is none."""
-    program, drawn = painter.passes["ShadowCaster"], painter.scene.drawn["ShadowCaster"]
+    drawn = painter.scene.drawn["ShadowCaster"]
+    program = painter.passes[drawn.pass_index]
     text = program.text + "\nfloat4 DepthFrag(float4 at : SV_Position) : SV_Target { return float4(at.z, 0, 0, 1); }\n"
     path = replace(program, text=text).write(painter.folder)
     states: dict[str, Any] = {

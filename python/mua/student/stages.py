@@ -195,22 +195,50 @@ def fit_branch(
 
     Stops after the stage `until`.
     """
-    weights = start_branch(
+    stage = f"{name} bases"
+    flat, variance = factorize_branch(
         branch,
-        inputs,
         source,
-        channels=channels,
-        components=components,
+        frames=len(inputs),
         settings=settings,
-        name=name,
-        run=run,
-        parts=parts,
-        until=until,
-        sensitivities=sensitivities,
-        frames=frames,
+        stage=stage,
+        run=run.alone(stage),
+        sensitivities=None if sensitivities is None else sensitivities.of(channels),
+        counts=frames,
     )
-    if until in ("bases", "regression"):
+    release_memory()
+    weights = channel_weights(variance, channels, size=run.size)
+    if until == "bases":
         return
+    freeze_channels(branch, flat, still_channels(variance, channels, size=run.size))
+    drop_negligible(branch, flat, least_spread(channels, size=run.size).to(flat))
+    rank = min(settings.hidden, len(inputs))  # the last layer's rank is that of the hidden layer before it
+    stage = f"{name} coefficients"
+    own = run.alone(stage)
+
+    def aim(flat: Tensor) -> dict[str, Tensor]:
+        return vars(joint_targets(branch, flat, weights, rank=rank, generator=own.generator, frames=frames))
+
+    targets = Targets(**own.once(f"{name} targets", partial(aim, flat)))
+    light, fade = channels == APPEARANCE, settings.generalisation.fade
+    local = None if parts is None else texture_locality(parts, branch, targets, weights, fade=fade, light=light)
+    branch.mlp = regress(
+        inputs,
+        targets.coordinates,
+        components=components,
+        expand=targets.expand,
+        locality=local,
+        own=None if frames is None else frames == 1,
+        fit=LIGHT if light else CLOTH,
+        hidden=settings.hidden,
+        schedule=settings.regression,
+        stage=stage,
+        run=own,
+        generalisation=settings.generalisation,
+    )
+    if until == "regression":
+        return
+    del flat, targets, local  # to leave their memory to the fine-tuning
     release_memory()
     error, basis_rate = subband_loss, BASIS_RATE
     if sensitivities is not None:
@@ -231,67 +259,3 @@ def fit_branch(
         frames=frames,
     )
     fold(branch)
-
-
-def start_branch(
-    branch: Branch,
-    inputs: Tensor,  # [F, D] normalised descriptors
-    source: Source,  # subbands of the branch's channels, counted from 0
-    *,
-    channels: slice,
-    components: Components,
-    settings: Settings,
-    name: str,
-    run: Run,
-    parts: Parts | None = None,
-    until: StageName | None = None,
-    sensitivities: Bands | None = None,  # sensitivities of images to the samples of all 23 channels, for one frame
-    frames: Tensor | None = None,  # [F] how much each frame counts
-) -> Tensor:
-    """Closed-form bases, and an MLP fitted to their coefficients, conditioned for fine-tuning; not if `until` "bases".
-
-    Returns the weight [C] of each channel's error.
-    """
-    stage = f"{name} bases"
-    flat, variance = factorize_branch(
-        branch,
-        source,
-        frames=len(inputs),
-        settings=settings,
-        stage=stage,
-        run=run.alone(stage),
-        sensitivities=None if sensitivities is None else sensitivities.of(channels),
-        counts=frames,
-    )
-    release_memory()
-    weights = channel_weights(variance, channels, size=run.size)
-    if until == "bases":
-        return weights
-    freeze_channels(branch, flat, still_channels(variance, channels, size=run.size))
-    drop_negligible(branch, flat, least_spread(channels, size=run.size).to(flat))
-    rank = min(settings.hidden, len(inputs))  # the last layer's rank is that of the hidden layer before it
-    stage = f"{name} coefficients"
-    own = run.alone(stage)
-    targets = Targets(
-        **own.once(
-            f"{name} targets",
-            lambda: vars(joint_targets(branch, flat, weights, rank=rank, generator=own.generator, frames=frames)),
-        )
-    )
-    light, fade = channels == APPEARANCE, settings.generalisation.fade
-    local = None if parts is None else texture_locality(parts, branch, targets, weights, fade=fade, light=light)
-    branch.mlp = regress(
-        inputs,
-        targets.coordinates,
-        components=components,
-        expand=targets.expand,
-        locality=local,
-        own=None if frames is None else frames == 1,
-        fit=LIGHT if light else CLOTH,
-        hidden=settings.hidden,
-        schedule=settings.regression,
-        stage=stage,
-        run=own,
-        generalisation=settings.generalisation,
-    )
-    return weights

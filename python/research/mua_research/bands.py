@@ -18,7 +18,7 @@ from mua.channels import APPEARANCE, CHANNELS, COARSE_TEXELS, DYNAMIC_LEVELS, GE
 from mua.student.finetune import subband_loss
 from mua.student.model import Branch, lowpass_texels
 from mua.student.settings import Ranks
-from mua.student.stages import start_branch
+from mua.student.stages import fit_branch
 from mua.training.optimise import Run
 from mua.wavelets import Bands, filters
 from mua_research.maps import CHANNELS as MAP_CHANNELS
@@ -156,7 +156,7 @@ class BandNetwork(Network):
         inputs, components = frames.motion.descriptors.to(run.device), frames.components(run.device)
         for branch, (name, part) in zip(self.branches, PARTS.items(), strict=False):
             source = partial(_bands_from, frames, part.start)
-            start_branch(
+            fit_branch(
                 branch,
                 inputs,
                 source,
@@ -166,6 +166,7 @@ class BandNetwork(Network):
                 name=name,
                 run=run,
                 parts=frames.parts,
+                until="regression",
             )
             scale_branch(branch, self.weights[part])
         start_convolutions(self.convolutions, run.generator)
