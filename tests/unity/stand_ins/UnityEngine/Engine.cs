@@ -32,7 +32,6 @@ namespace UnityEngine
         public delegate void LogCallback(string condition, string stackTrace, LogType type);
 
         public static event LogCallback logMessageReceived;
-        public static event Action quitting { add { } remove { } }
         public static event Events.UnityAction onBeforeRender;
 
         static Application()

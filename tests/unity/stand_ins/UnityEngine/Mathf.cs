@@ -31,6 +31,5 @@ namespace UnityEngine
         public static int Max(int a, int b) { return a > b ? a : b; }
         public static float Clamp(float value, float min, float max) { return value < min ? min : value > max ? max : value; }
         public static int Clamp(int value, int min, int max) { return value < min ? min : value > max ? max : value; }
-        public static float Clamp01(float value) { return Clamp(value, 0, 1); }
     }
 }
