@@ -1,7 +1,7 @@
 """An element in the life of a page: moved, away and back, beside others, out of sight, and asked for more."""
 
 import pytest
-from web.pages import ELEMENT, SENTENCE, avatar
+from web.pages import ELEMENT, avatar
 from web.test_page import LOADED, SETTLED, Open, opened, part
 
 __all__ = ["opened"]  # a fixture
@@ -88,20 +88,6 @@ def test_a_paused_element_of_another_size_is_drawn_again(opened: Open) -> None:
     drawn = page.evaluate("fake.drawn")
     page.evaluate(f"({ELEMENT}.style.width = '300px', 0)")
     page.wait(f"fake.drawn > {drawn}")
-
-
-def test_attributes_count_also_while_an_avatar_loads(opened: Open) -> None:
-    page = opened({"src": "hero.muaavatar"}, until=f"{SENTENCE} === 'Loading half of it'", before=HOLD)
-    asked = {"clip": "wave", "speed": "2", "level": "384", "show": "template"}
-    for name, value in asked.items():
-        page.evaluate(f"{ELEMENT}.setAttribute('{name}', '{value}')")
-    page.evaluate("go()")
-    page.wait(LOADED)
-    page.evaluate(SETTLED)
-    assert page.evaluate("[fake.clip, fake.speed, fake.level, fake.show.template, fake.show.splats]") == [
-        *("wave", 2, 384),
-        *(True, False),
-    ]
 
 
 def test_attributes_count_after_it_is_loaded_and_leave_the_others(opened: Open) -> None:
