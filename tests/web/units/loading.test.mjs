@@ -155,6 +155,13 @@ test("a mesh without splats does not take the place of a poster", async () => {
   assert.deepEqual(bare.named("show"), [[true], [false], [false]]);
 });
 
+test("an avatar of which a part was shown is withdrawn where the rest is damaged", async () => {
+  const { loading, named } = begun();
+  answers.a = async ({ part }) => (part(), await settled(), Promise.reject(new AvatarError("damaged")));
+  await loading.add(["a"]);
+  assert.deepEqual([named("withdraw").length, named("error")], [1, [["damaged"]]]);
+});
+
 test("where nothing was shown, nothing is withdrawn", async () => {
   const { loading, named } = begun();
   answers.a = () => Promise.reject(new AvatarError("damaged"));
