@@ -130,6 +130,18 @@ def test_two_skins_on_one_skeleton_are_both_posed(tmp_path: Path) -> None:
     np.testing.assert_allclose(frames(read), np.repeat(expected, 2, axis=1), atol=BOUND)
 
 
+def test_several_skins_of_one_mesh_act_as_one(tmp_path: Path) -> None:
+    fbx = Fbx()
+    bones = skeleton(fbx)
+    mesh, weights = fbx.mesh(fbx.model("body", "Mesh"), POINTS), np.eye(3)[fbx_files.BONES]
+    fbx.skin(mesh, bones[:2], binds(fbx)[:2], weights=weights[:, :2])
+    fbx.skin(mesh, bones[1:], binds(fbx)[1:], weights=weights[:, 1:])
+    keyed(fbx, bones[1])
+    read = read_surfaces(fbx.save(tmp_path / "body.fbx"))
+    assert not any("without weights" in note for note in read.notes)
+    np.testing.assert_allclose(frames(read), frames(read_glb(bent(body()), tmp_path)), atol=BOUND)
+
+
 def test_each_stack_is_a_clip_of_its_name(tmp_path: Path) -> None:
     fbx, bones, _ = figure()
     keyed(fbx, bones[1], name="Body|bend")

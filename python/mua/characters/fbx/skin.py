@@ -17,9 +17,9 @@ LINEAR = (int(ufbx.SkinningMethod.LINEAR), int(ufbx.SkinningMethod.RIGID))
 
 
 def bones_of(mesh: Any, nodes: Nodes) -> list[tuple[Any, int]]:
-    """The clusters of a mesh that name a bone, each with its node; of several skin deformers the first counts."""
+    """The clusters of a mesh that name a bone, each with its node; those of several skin deformers act as of one."""
     found = []
-    for deformer in list(items(mesh, "skin_deformers"))[:1]:
+    for deformer in items(mesh, "skin_deformers"):
         for cluster in items(deformer, "clusters"):
             if get(cluster, "bone_node") is not None:
                 found.append((cluster, _scaled(cluster, nodes)))
@@ -65,10 +65,8 @@ def rigid_skin(node: int, holder: int, nodes: Nodes) -> Skin:
 
 
 def _note_method(geometry: Geometry, messages: Messages) -> None:
-    deformers = list(items(geometry.source, "skin_deformers"))
-    if len(deformers) > 1:
-        messages.add("Of several skins on one mesh the first is taken: {}.", geometry.name)
-    if int(get(deformers[0], "skinning_method")) not in LINEAR:
+    methods = {int(get(deformer, "skinning_method")) for deformer in items(geometry.source, "skin_deformers")}
+    if not methods <= set(LINEAR):
         messages.add("Meshes skinned by dual quaternions are skinned linearly, as avatars are: {}.", geometry.name)
 
 
