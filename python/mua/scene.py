@@ -79,6 +79,7 @@ class Motion:
     name: str
     rate: float  # frames per second
     worlds: Array  # [F, nodes, 4, 4] metres, Y up
+    start: float = 0.0  # seconds of the first frame, as the file counts them
 
 
 @dataclass(frozen=True, eq=False)

@@ -26,6 +26,7 @@ class Take:
 
     name: str
     rate: float  # frames per second
+    start: float  # seconds of the first frame
     frames: int
     local: dict[int, Array]  # by node with keys, [F, 4, 4] to its parent, of the topmost to the world
 
@@ -61,7 +62,7 @@ def read_takes(scene: Any, nodes: Nodes, path: Path, messages: Messages) -> list
             local = {node: _sampled(stack, node, nodes, times) for node in sorted(keyed)}
             if not all(np.isfinite(matrices).all() for matrices in local.values()):
                 raise InputError(f"{path}: animation stack {name} holds a number that is not finite")
-            takes.append(Take(name, rate, len(times), local))
+            takes.append(Take(name, rate, start, len(times), local))
     return takes
 
 

@@ -165,4 +165,4 @@ class Reader:
         for n, node in enumerate(nodes):
             if node in take.local:
                 local[:, n] = take.local[node]
-        return Motion(take.name, take.rate, chain(local, parents))
+        return Motion(take.name, take.rate, chain(local, parents), take.start)

@@ -53,7 +53,7 @@ def read_animations(
             continue
         frames = start + np.arange(int(np.floor((end - start) * RATE + 1e-3)) + 1) / RATE
         local = _local(document, tracks, frames, nodes=nodes, rest=rest)
-        motions.append(Motion(name, RATE, chain(local, parents)))
+        motions.append(Motion(name, RATE, chain(local, parents), float(start)))
     return tuple(motions), messages.notes()
 
 

@@ -1,7 +1,7 @@
 """Characters from .glb, .gltf and .vrm files."""
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -45,6 +45,11 @@ def read_gltf_animation(path: Path) -> Animation:
     Where the mesh is a part of the body alone, such as a face, that of all skins or moved nodes which names most limbs.
     Raises an InputError where `read_gltf` does, except that a mesh may be missing where there are joints.
     """
+    return whole_animation(*gltf_scenes(path), path)
+
+
+def gltf_scenes(path: Path) -> tuple[Scene, Iterator[Scene]]:
+    """The scene of all meshes that hang on joints, and those of skeletons alone that clips move besides."""
     document = load(path)
     tree = read_tree(document)
     scene = _meshes(document, tree)
@@ -54,7 +59,7 @@ def read_gltf_animation(path: Path) -> Animation:
     if meshed and not set(moved_nodes(document)) <= joints:
         wholes.append(_moved_tree(document, tree))
     vrm = read_vrm(document)
-    return whole_animation(scene, (_scene(document, tree, skins, vrm=vrm) for skins in wholes), path)
+    return scene, (_scene(document, tree, skins, vrm=vrm) for skins in wholes)
 
 
 def _meshes(document: Document, tree: Tree) -> Scene:

@@ -1,6 +1,6 @@
 """Characters from .usd, .usda, .usdc and .usdz files, by UsdSkel, else of rigid parts that move."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TypeAlias
@@ -41,17 +41,26 @@ def read_usd_animation(path: Path) -> Animation:
 
     Raises an InputError where `read_usd` does, except that a mesh may be missing where a skeleton is animated.
     """
-    stage = _opened(path)
-    scene = _meshes(stage, path)
-    if any(len(part.faces) for part in scene.parts):
-        rig = assemble(scene, path)
+    meshed, bare = usd_scenes(path)
+    if any(len(part.faces) for part in meshed.parts):
+        rig = assemble(meshed, path)
         return Animation(rig.skeleton, rig.clips, ())
+    return bare_animation(next(bare), path)
+
+
+def usd_scenes(path: Path) -> tuple[Scene, Iterator[Scene]]:
+    """The scene of all meshes that hang on joints, and that of the animated skeletons alone."""
+    stage = _opened(path)
+    return _meshes(stage, path), _bare(stage, path)
+
+
+def _bare(stage: Usd.Stage, path: Path) -> Iterator[Scene]:
     skeletons: list[Bones] = []
     for query in animated(stage):
         skeletons.append(read_bones(query, path, first=_node_count(skeletons)))
     joints = [bones.first + 1 + np.arange(len(bones.paths)) for bones in skeletons]
     skins = [Skin(at, np.linalg.inv(bones.binds)) for at, bones in zip(joints, skeletons, strict=True)]
-    return bare_animation(_scene(stage, skeletons, skins, name=path.stem), path)
+    yield _scene(stage, skeletons, skins, name=path.stem)
 
 
 def _opened(path: Path) -> Usd.Stage:
@@ -176,7 +185,7 @@ def _motions(stage: Usd.Stage, nodes: Sequence[_Nodes], *, world: Array) -> list
     codes = start + np.arange(count) * per_second / RATE
     worlds = [_worlds(nodes, Usd.TimeCode(float(code)), at_rest=False) for code in codes]
     name = animations[0].GetPrim().GetName() if animations else "Animation"
-    return [Motion(name, RATE, world @ np.array(worlds))]
+    return [Motion(name, RATE, world @ np.array(worlds), start / per_second)]
 
 
 def _transform_times(prim: Usd.Prim) -> set[float]:
