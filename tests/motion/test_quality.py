@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from people import person, retarget, still, upright, walk, world
+from people import person, retarget, still, upright, walk, with_fingers, world
 from scipy.spatial.transform import Rotation
 
 from mua import rotation
@@ -158,17 +158,6 @@ def test_a_head_that_looks_elsewhere_than_in_the_motion_is_measured(nod: float, 
 def test_a_head_that_stares_upward_is_said_where_the_motion_does_not_tell() -> None:
     assert head_flaws("dance", 40.0, None) == ["dance: the head looks 40 degrees upward in half of the frames."]
     assert head_flaws("bows", -50.0, None) == head_flaws("still", 3.0, None) == head_flaws("lies", None, 2.0) == []
-
-
-def with_fingers(skeleton: Skeleton) -> Skeleton:
-    """The person with four more fingers on each hand, side by side, palms down."""
-    names, parents, offsets = list(skeleton.names), list(skeleton.parents), list(skeleton.bind_translations)
-    for side, way in (("Left", 1), ("Right", -1)):
-        for finger, ahead in (("Index", 0.03), ("Pinky", -0.03)):
-            names.append(f"{side}Hand{finger}1")
-            parents.append(skeleton.names.index(f"{side}Hand"))
-            offsets.append(np.array([way * 0.09, 0, ahead]))
-    return upright(names, parents, offsets)
 
 
 def test_a_hand_that_is_turned_otherwise_is_measured_by_its_palm() -> None:

@@ -15,6 +15,7 @@ from people import (
     retarget,
     still,
     walk,
+    with_fingers,
     with_offset,
     world,
 )
@@ -172,3 +173,20 @@ def test_rotations_are_copied_between_rigs_of_one_maker_whatever_the_rest_pose()
     found, _ = retarget(SourceMotion(resting_in(source, clip, 10), clip), target)
     cosines = np.abs(np.sum(world(target, found)[0] * world(source, clip)[0], axis=-1))
     np.testing.assert_allclose(cosines, 1, atol=POSITION_BOUND)
+
+
+@pytest.mark.parametrize("straight", [False, True], ids=["standing", "along one axis"])
+def test_palms_follow_the_motion_whichever_way_a_rest_pose_holds_the_hands(straight: bool) -> None:
+    target, source = with_fingers(person()), with_fingers(person(size=1.2))
+    clip = walk(source)
+    hands = [source.names.index(f"{side}Hand") for side in ("Left", "Right")]
+    resting = source.bind_rotations.copy()
+    resting[hands] = Rotation.from_euler("x", [[70], [-50]], degrees=True).as_quat(scalar_first=True)
+    source = replace(source, bind_rotations=resting)
+    if straight:
+        source, clip = bone_aligned(source, clip)
+    found, _ = retarget(SourceMotion(source, clip), target)
+    for side in ("Left", "Right"):
+        for begin, end in (("HandPinky1", "HandIndex1"), ("Hand", "HandMiddle1")):
+            along = (bone(*side_clip, side + begin, side + end) for side_clip in ((target, found), (source, clip)))
+            assert angle(*along) < ANGLE_BOUND

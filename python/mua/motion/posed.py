@@ -5,9 +5,10 @@ the joints' places in the world say holds for all of them, because a bone keeps 
 
 - trunk: up is the way from hips to shoulders while the body is most upright, left runs through hips and shoulders;
 - limbs: along the bone, and about the axis on which elbow or knee bends;
+- hands: the palm, by where fingers begin;
 - feet: a standing sole is level;
 - the head is level on average, and the neck between it and the trunk;
-- all else (collar bones, hands): on average as in the bind pose, relative to the part above.
+- all else (collar bones, palms without fingers): on average as in the bind pose, relative to the part above.
 """
 
 from dataclasses import dataclass
@@ -17,7 +18,7 @@ import numpy as np
 from mua import rotation
 from mua.arrays import Array
 from mua.motion.contacts import planted
-from mua.motion.rest import IDENTITY, Rest, Y
+from mua.motion.rest import IDENTITY, Rest, Y, palm_alignment
 from mua.motion.trunk import AROUND, AT_EASE, Trunk, degrees, leaned, nearest_axis, trunk_of, unit
 from mua.pose.descriptor import heading_of
 from mua.pose.joint_names import FINGERS, ROLES
@@ -97,6 +98,8 @@ def _calibration(frames: _Frames, joint: int, role: str, found: dict[int, Array]
         turn = _upper_calibration(frames, joint, side, part, found)
     elif part in LOWER:
         turn = _lower_calibration(frames, joint, side, part, found)
+    elif part == "hand" and joint == frames.rest.joint(role):
+        turn = _hand_calibration(frames, joint, side)
     elif part == "foot":
         turn = _foot_calibration(frames, joint, side, found)
     elif role == "neck":
@@ -205,6 +208,13 @@ def _level(frames: _Frames, joint: int, found: dict[int, Array]) -> Array:
         return _calibration_as_above(frames, joint, found)
     own = rotation.conjugate(frames.moving(joint))
     return _mean(rotation.multiply(own, heading_of(_world(frames, joint, found)))[standing])
+
+
+def _hand_calibration(frames: _Frames, joint: int, side: str) -> Array | None:
+    """Calibration of a hand by its palm, which lies in the joint of the hand as at rest in every frame."""
+    palm = palm_alignment(frames.rest, side)
+    resting = frames.rest.source_turned[frames.rest.matches.chains[joint][1]]
+    return None if palm is None else rotation.multiply(rotation.conjugate(resting), palm)
 
 
 def _finger_calibration(frames: _Frames, joint: int, role: str, found: dict[int, Array]) -> Array | None:

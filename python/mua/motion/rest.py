@@ -127,6 +127,9 @@ def _alignments(rest: Rest, upright: Array) -> dict[int, Array]:
         side, _, part = role.rpartition(" ")
         if part == "foot":
             found[joint] = _sole_alignment(rest, side, upright, base)
+        elif part == "hand":
+            palm = palm_alignment(rest, side) if joint == rest.joint(role) else None
+            found[joint] = base if palm is None else palm
         elif part in LIMBS:
             found[joint] = _bone_alignment(rest, role, f"{side} {LIMBS[part]}", base)
         else:
@@ -162,6 +165,27 @@ def _sole_alignment(rest: Rest, side: str, upright: Array, base: Array) -> Array
     if target_sole is None or source_sole is None:
         return base
     return rotation.multiply(rotation.from_matrix(source_sole), rotation.conjugate(rotation.from_matrix(target_sole)))
+
+
+def palm_alignment(rest: Rest, side: str) -> Array | None:
+    """The rotation [4] between the palms of target and source at rest, by where fingers begin; None where unknown.
+
+    Fingers begin at fixed places of the palm, so that it does not matter which way a rest pose holds it.
+    """
+    places = [rest.places(f"{side} {part}") for part in ("hand", "index", "middle", "pinky")]
+    if any(pair is None for pair in places):
+        return None
+    target, source = (_palm(*(pair[i] for pair in places if pair is not None)) for i in range(2))
+    if target is None or source is None:
+        return None
+    return rotation.multiply(rotation.from_matrix(source), rotation.conjugate(rotation.from_matrix(target)))
+
+
+def _palm(wrist: Array, index: Array, middle: Array, pinky: Array) -> Array | None:
+    """Columns along the fingers, across the hand and out of its back [3, 3]; None where these places lie in a line."""
+    fingers = unit(middle - wrist)
+    out = unit(np.cross(fingers, index - pinky))
+    return np.stack([fingers, np.cross(out, fingers), out], axis=-1) if out.any() else None
 
 
 def _first_child(skeleton: Skeleton, at: Array, joint: int) -> Array | None:
