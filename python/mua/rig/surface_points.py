@@ -7,9 +7,13 @@ from mua.rig.character import Mesh
 from mua.rig.charts import areas
 
 
-def spread_points(mesh: Mesh, count: int) -> tuple[Array, Array]:
-    """Triangles [S] and barycentrics [S, 3] of points at equal shares of the area; deterministic."""
-    total = np.cumsum(areas(mesh.vertices[mesh.faces]))
+def spread_points(
+    mesh: Mesh,
+    count: int,
+    weights: Array | None = None,  # [F] of the triangles; None: their area
+) -> tuple[Array, Array]:
+    """Triangles [S] and barycentrics [S, 3] of points at equal shares of the area or the weights; deterministic."""
+    total = np.cumsum(areas(mesh.vertices[mesh.faces]) if weights is None else weights)
     shares = (np.arange(count) + 0.5) * (total[-1] / max(count, 1)) if len(total) else np.empty(0)
     triangles = np.minimum(np.searchsorted(total, shares), max(len(total) - 1, 0))
     # The two-dimensional golden ratio (Roberts 2018, https://extremelearning.com.au) spreads points in the triangles.

@@ -109,7 +109,7 @@ def sample_surface(
     """
     mesh, places = points.mesh, points.places
     normals = face_normals(mesh)
-    triangles, barycentrics = spread_points(mesh, SAMPLES * len(points.texels))
+    triangles, barycentrics = spread_points(mesh, SAMPLES * len(points.texels), _shares(mesh))
     at = interpolate(mesh.vertices, mesh.faces[triangles], barycentrics)
     column, row = (interpolate(mesh.uv, mesh.uv_faces[triangles], barycentrics) * points.size).astype(np.int64).T
     row_of_texel = np.full(points.size**2, -1, np.int64)
@@ -126,6 +126,15 @@ def sample_surface(
     far = np.linalg.norm(at - places[texel], axis=1) > FAR * reach
     bare = far & (points.triangles[texel] != triangles)
     return Samples(at, triangles, texel, bare)
+
+
+def _shares(mesh: Mesh) -> Array:
+    """The share of samples [F] that each triangle gets: half by its texels, as fine parts have many on little surface.
+
+    The other half is by its surface, some of which may have next to no texels.
+    """
+    kinds = (areas(mesh.uv[mesh.uv_faces]), areas(mesh.vertices[mesh.faces]))
+    return np.asarray(sum(kind / max(float(kind.sum()), np.finfo(float).tiny) for kind in kinds))
 
 
 def local_normals(
