@@ -17,6 +17,14 @@ def charts_of(mesh: Mesh) -> Array:
     return find_charts(nodes, mesh.uv[mesh.uv_faces])
 
 
+def pieces_of(mesh: Mesh) -> Array:
+    """The connected piece of the surface [F] that each face belongs to."""
+    count, first = len(mesh.vertices), mesh.faces[:, :1]
+    ends = np.broadcast_to(first, (len(first), 2)).ravel(), mesh.faces[:, 1:].ravel()
+    links = coo_matrix((np.ones(len(ends[0])), ends), shape=(count, count))
+    return np.asarray(connected_components(links, directed=False)[1][mesh.faces[:, 0]])
+
+
 def find_charts(
     nodes: Array,  # [F, 3] int, equal where corners share vertex, UV and material
     corners: Array,  # [F, 3, 2] UV

@@ -1,10 +1,14 @@
-"""Where the surface ends or turns away, its surfels end as well: at hems, fingertips and folds none stands out."""
+"""Where the surface ends or turns away, its surfels end as well: at hems, fingertips and folds none stands out.
+
+Each counts as on the surface where its own connected piece is near: an eyelid ends before the eye, not on it.
+"""
 
 import numpy as np
 from scipy.spatial import cKDTree
 
 from mua.arrays import Array
 from mua.rig.character import Mesh
+from mua.rig.charts import pieces_of
 from mua.rig.surface_points import nearest_barycentrics
 from mua.texture.footprints import Samples
 
@@ -13,12 +17,14 @@ AWAY = 0.4  # distance of the outline from the surface over that from the centre
 LEAST = 0.25  # of its reach to one side that a surfel keeps
 HALVINGS = 4  # of the range in which the outline is sought
 NEAREST = 3, 24  # triangles among which the nearest point is sought, at first and where that is far
+APART = 10.0  # times the surface's size, between its pieces in the space in which the nearest triangles are sought
 
 
 def end_at_surface(
     mesh: Mesh,
     samples: Samples,
     *,
+    triangles: Array,  # [N] on which the surfels lie
     frames: Array,  # [N, 3, 3] columns x, y, z
     centres: Array,  # [N, 3] metres
     extents: Array,  # [N, 2] standard deviations along x and y, metres
@@ -31,26 +37,46 @@ def end_at_surface(
     sides = np.stack([axes, -axes], axis=2).reshape(-1, 3)  # [N * 4, 3], both sides of x, then of y
     starts = np.repeat(centres, 4, axis=0)
     reach = np.repeat(EDGE * extents, 2)
-    far = np.flatnonzero(_lies_off(mesh, samples, starts + reach[:, None] * sides, reach))
+    own = _Pieces(mesh, samples)
+    piece = np.repeat(own.pieces[triangles], 4)
+    far = np.flatnonzero(own.lie_off(starts + reach[:, None] * sides, reach, piece))
     low, high = LEAST * reach[far], reach[far]
     for _ in range(HALVINGS):
         middle = (low + high) / 2
-        off = _lies_off(mesh, samples, starts[far] + middle[:, None] * sides[far], middle)
+        off = own.lie_off(starts[far] + middle[:, None] * sides[far], middle, piece[far])
         low, high = np.where(off, low, middle), np.where(off, middle, high)
     reach[far] = low
     there, back = np.moveaxis(reach.reshape(-1, 2, 2), 2, 0)
     return np.einsum("nkc,nk->nc", axes, (there - back) / 2), (there + back) / (2 * EDGE)
 
 
-def _lies_off(mesh: Mesh, samples: Samples, places: Array, reach: Array) -> Array:
-    """Which places [n, 3] lie farther from the surface than AWAY allows at that distance [n] from their centres."""
-    off, tree = np.full(len(places), len(samples.places) > 0), cKDTree(samples.places)
-    for count in NEAREST:
-        rows = np.flatnonzero(off)
-        if not len(rows):
-            break
-        near = tree.query(places[rows], k=range(1, min(count, len(samples.places)) + 1), workers=-1)[1]
-        corners = mesh.vertices[mesh.faces[samples.triangles[near]]]
-        nearest = np.einsum("nkc,nkcd->nkd", nearest_barycentrics(places[rows, None], corners), corners)
-        off[rows] = np.linalg.norm(nearest - places[rows, None], axis=2).min(axis=1) > AWAY * reach[rows]
-    return off
+class _Pieces:
+    """The connected pieces of a surface, each of which its own surfels end with."""
+
+    def __init__(self, mesh: Mesh, samples: Samples) -> None:
+        self.pieces = pieces_of(mesh)  # [F]
+        self._corners, self._triangles = mesh.vertices[mesh.faces], samples.triangles
+        self._apart = APART * float(np.ptp(mesh.vertices, axis=0).max())
+        self._tree = cKDTree(self._among(samples.places, self.pieces[samples.triangles]))
+
+    def lie_off(
+        self,
+        places: Array,  # [n, 3] metres
+        reach: Array,  # [n] their distances from the centres of their surfels, metres
+        pieces: Array,  # [n] on which these surfels lie
+    ) -> Array:
+        """Which places [n] lie farther from their piece than AWAY allows at that distance from their centres."""
+        off, among = np.full(len(places), self._tree.n > 0), self._among(places, pieces)
+        for count in NEAREST:
+            rows = np.flatnonzero(off)
+            if not len(rows):
+                break
+            near = self._tree.query(among[rows], k=range(1, min(count, self._tree.n) + 1), workers=-1)[1]
+            corners = self._corners[self._triangles[near]]
+            nearest = np.einsum("nkc,nkcd->nkd", nearest_barycentrics(places[rows, None], corners), corners)
+            off[rows] = np.linalg.norm(nearest - places[rows, None], axis=2).min(axis=1) > AWAY * reach[rows]
+        return off
+
+    def _among(self, places: Array, pieces: Array) -> Array:
+        """Places [n, 4] of which those on other pieces are far away."""
+        return np.column_stack([places, self._apart * pieces])

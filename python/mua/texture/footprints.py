@@ -10,7 +10,7 @@ from mua.rig.character import Mesh
 from mua.rig.charts import areas, charts_of
 from mua.rig.surface_points import face_normals, interpolate, spread_points
 
-SLIT = 2.5  # times its texel's footprint that the step to a neighbour may span; a longer one crosses a slit in a chart
+SLIT = 1.5  # times its texel's footprint that the step to a neighbour may span; a longer one crosses a slit in a chart
 COARSEST = 3.0  # times the median step that a texel may span: beyond it a surfel reaches out into the air beside it
 SAMPLES = 8  # of the surface, for each texel
 FEW = 2  # samples: fewer than these say little about the extent of a texel's surface

@@ -87,7 +87,9 @@ def rest_surfels(
     turn, extents[:, :2] = along_lines(frames, extents[:, :2], steps=footprint, wanted=wanted)
     turned = rotation.multiply(smooth, rotation.from_axis_angle(np.array([0.0, 0, 1]), turn))
     centres, axes = points.places + aside, rotation.to_matrix(turned)
-    shift, extents[:, :2] = end_at_surface(mesh, samples, frames=axes, centres=centres, extents=extents[:, :2])
+    shift, extents[:, :2] = end_at_surface(
+        mesh, samples, triangles=triangles, frames=axes, centres=centres, extents=extents[:, :2]
+    )
     extents[:, 2] = np.maximum(THINNESS * extents[:, 2], FLATNESS * extents[:, :2].min(axis=1))
     least = max(LEAST * float(np.ptp(mesh.vertices, axis=0).max()), float(np.finfo(np.float32).tiny))
     return Surfels(
