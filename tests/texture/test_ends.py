@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from patches import joined
 
 from mua import rotation
 from mua.rig.character import Mesh
@@ -50,6 +51,28 @@ def test_surfels_at_the_end_of_a_strip_do_not_stand_out() -> None:
     ends = outlines(*surfels_of(sheet(20.3, 12.3))) / SIDE
     assert ends[..., 0].max() < 20.3 + 0.4
     assert ends[..., 1].min() > -0.4
+
+
+def test_a_sheet_ends_before_another_that_lies_close_behind_it() -> None:
+    """An eyelid before the eye: what lies behind does not carry the lid's surfels on."""
+    lid, eye = sheet(20.3, 12.3), sheet(36, 12.3)
+    behind = Mesh(eye.vertices - [0, 0, 0.3 * SIDE], FACES, eye.uv / [2, 8], FACES)
+    found, centres = surfels_of(joined(lid, behind))
+    ends = outlines(found, centres)[centres[:, 2] > -0.1 * SIDE] / SIDE
+    assert len(ends) > 200
+    assert ends[..., 0].max() < 20.3 + 0.4
+
+
+def test_a_slit_that_the_texture_does_not_show_is_an_end() -> None:
+    """Lips: neighbours in the texture, apart in space by up to 1.3 texels at the right."""
+    flat = np.array([[-4, 0], [0, 0], [20, 0], [20, 6], [0, 6], [20, 6], [20, 12], [0, 12], [-4, 12]], float)
+    faces = np.array([[0, 1, 4], [0, 4, 8], [4, 7, 8], [1, 2, 3], [1, 3, 4], [4, 5, 6], [4, 6, 7]], np.int32)
+    open_by = np.zeros_like(flat)
+    open_by[5:7, 1] = 1.3
+    points = np.column_stack([(flat + open_by) * SIDE, np.zeros(len(flat))])
+    found, centres = surfels_of(Mesh(points, faces, (flat + 8) / SIZE, faces))
+    lower = (centres[:, 0] > 15 * SIDE) & (centres[:, 1] < 6 * SIDE)
+    assert outlines(found, centres)[lower][..., 1].max() / SIDE < 6.3
 
 
 def test_surfels_inside_a_sheet_are_not_shortened() -> None:

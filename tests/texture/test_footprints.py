@@ -74,6 +74,17 @@ def test_a_seam_between_two_charts_is_closed() -> None:
     assert least_coverage(joined(left, moved)) > OPAQUE
 
 
+def test_a_small_part_with_many_texels_is_closed() -> None:
+    """An iris: waves of a few millimetres that fill most of the texture, beside a sheet of 10 m that has little."""
+    u, v = np.meshgrid(np.linspace(0, 1, 41), np.linspace(0, 1, 41))
+    waves = np.stack([u, v, 0.04 * np.sin(12 * u) * np.sin(12 * v)], axis=-1) * 0.005
+    iris = sheet(waves, 0.05 + 0.7 * np.stack([u, v], axis=-1))
+    wide, above = graded(np.ones(4), 0.1, size=10.0), np.array([0, 1.0, 0])
+    mesh = joined(iris, Mesh(wide.vertices + above, wide.faces, wide.uv + 0.8 * above[:2], wide.uv_faces))
+    _, found, places = laid(mesh)
+    assert coverage(waves[4:-4, 4:-4].reshape(-1, 3), places, found.rotations, np.exp(found.log_scales)).min() > OPAQUE
+
+
 def test_a_sliver_in_the_texture_makes_no_fog() -> None:
     """One triangle of a large sheet has a single row of texels: its surfels stay about as large as it is."""
     body = graded(np.ones(4), 0.6)
