@@ -9,7 +9,8 @@ with the light and the moving cloth that it learnt, so that only its share of da
 
 PSNR is over all pixels that either of them covers, on grey, and over those within BORDER of an open border of the
 surface. "Dark" is the share of pixels within FRINGE outside the source's silhouette that are darker than both the
-nearest pixel of the source and the background: a fringe.
+nearest pixel of the source and the background: a fringe. The bound, after "of", is the PSNR of the surface itself under
+its atlas averaged to so many texels: splats without gaps that end where the surface does would come near to it.
 """
 
 import argparse
@@ -26,6 +27,7 @@ from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.asset.read import read
 from mua.atlas.detail import read_detail
+from mua.atlas.filtering import reduced
 from mua.avatar.camera import Camera, orbit
 from mua.avatar.decode import decode_clip_frame, pose_splats
 from mua.baking.one_sided import open_edges
@@ -40,6 +42,7 @@ from mua.pose.clip import Clip
 from mua.pose.encoding import RATE
 from mua.rig.body_parts import BODY_PARTS, body_parts
 from mua.rig.character import Character
+from mua.scene import Material, Part
 from mua.teachers.simulated.still import StillTeacher
 from mua.teachers.simulated.surface import SkinnedSurface
 
@@ -135,19 +138,26 @@ def moments(character: Character, motion: Sequence[Path]) -> Iterator[tuple[Mome
         yield rest, Clip(rest.name, RATE, rest.pose.rotations[None], rest.pose.translations[None]), 0
 
 
+def as_textured(character: Character, texels: int) -> tuple[Part, Material]:
+    """The surface as one part, and its atlas averaged to so many texels."""
+    mesh, unused = character.mesh, np.zeros((len(character.mesh.vertices), 1))
+    part = Part("surface", 0, mesh.vertices, mesh.faces, mesh.uv, mesh.uv_faces, 0, 0, unused.astype(int), unused)
+    return part, Material("atlas", reduced(character.base_color, len(character.base_color) // texels))
+
+
 def close_ups(
     path: Path, *, texels: int, size: int, avatar: Avatar | None, motion: Sequence[Path]
 ) -> Iterator[tuple[str, Array, list[Figures]]]:
-    """Each part from each side in each pose: its name, images [size, n size, 3] in 0..1, and how splats differ."""
+    """Each part from each side in each pose: its name, images [size, n size, 3] in 0..1, and how the bound and splats differ."""
     character = load_character(path, uv="auto", seed=0, detail=read_detail((), uv="auto"))
     if character.source is None:
         raise SystemExit(f"{path}: this format keeps nothing to compare with")
     teacher, surface = StillTeacher(character, texels=texels), SkinnedSurface(character)
     edges = open_edges(character.mesh.vertices, character.mesh.faces)
-    scene = character.source.scene
+    scene, (part, material) = character.source.scene, as_textured(character, texels)
     with opened() as context:
         paint = Painter(context, scene.parts, scene.materials, screen=(size, size))
-        splat = SplatPainter(context, (size, size))
+        textured, splat = Painter(context, [part], [material], screen=(size, size)), SplatPainter(context, (size, size))
         for moment, clip, at in moments(character, motion):
             shown = teacher.frame(moment.pose, moment.stretches)
             frames = [pose_splats(teacher.rig, shown.mesh, texture=shown.texture, pose=moment.pose)]
@@ -162,7 +172,9 @@ def close_ups(
                     scale = float(camera.projection[1, 1] * size / 2 / -middle[2])
                     source, splats = paint(drawn, camera), [splat(frame, camera) for frame in frames]
                     border = near(places[edges].mean(axis=1), camera, pixels=BORDER * scale)
-                    figures = [measured(source, one, border, scale=scale) for one in splats]
+                    figures = [
+                        measured(source, one, border, scale=scale) for one in (textured([places], camera), *splats)
+                    ]
                     yield (
                         f"{moment.name}, {name}, {side}",
                         np.hstack([over(i, GREY) for i in (source, *splats)]),
@@ -195,8 +207,9 @@ def main(arguments: list[str] | None = None) -> None:
 
 
 def _line(name: str, figures: Sequence[Figures]) -> str:
-    splats, *avatar = figures
-    own = f"{name}: {splats.psnr:.2f} dB, at borders {splats.border:.2f} dB, {splats.dark:.1%} dark outside"
+    bound, splats, *avatar = figures
+    psnr = f"{splats.psnr:.2f} dB of {bound.psnr:.2f} dB"
+    own = f"{name}: {psnr}, at borders {splats.border:.2f} dB, {splats.dark:.1%} dark outside"
     return own + "".join(f"; avatar {one.dark:.1%}" for one in avatar)
 
 
