@@ -4,6 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from patches import ONE_JOINT, grid_faces, grid_points
+from scipy.ndimage import map_coordinates
 from tube import HEIGHT, RADIUS, tube
 
 from mua.arrays import Array
@@ -11,7 +13,7 @@ from mua.avatar.camera import orbit
 from mua.avatar.decode import pose_splats
 from mua.avatar.rendering import render_premultiplied
 from mua.channels import SH_C0
-from mua.rig.character import Character
+from mua.rig.character import Character, Mesh
 from mua.rig.texel_map import build_texel_map
 from mua.teachers.simulated import texels
 from mua.teachers.simulated.still import StillTeacher
@@ -96,6 +98,41 @@ def test_stripes_are_sharper_than_round_surfels_of_one_width_show_them(monkeypat
     sharp = float(np.mean((drawn(character, TEXELS) - finer) ** 2))
     monkeypatch.setattr(texels, "sharpness", even)
     assert sharp < 0.75 * float(np.mean((drawn(character, TEXELS) - finer) ** 2))
+
+
+def checked_sheet(texels: int, wide: float) -> tuple[Character, Array]:
+    """A sheet of 1 m under slanting checks so many texels wide, and their grey in 0..1 at sixteenths of a texel."""
+    v, u = (np.indices((16 * texels, 16 * texels)) + 0.5) / 16
+    along, across = 0.955 * u + 0.296 * v, 0.955 * v - 0.296 * u
+    gray = np.where((np.sin(np.pi / wide * along) > 0) ^ (np.sin(np.pi / wide * across) > 0), 220, 40)
+    points, faces = grid_points(8), grid_faces(8, 8).astype(np.int32)
+    mesh = Mesh(np.column_stack([points, np.zeros(len(points))]), faces, 0.1 + 0.8 * points * [1, -1] + [0, 0.8], faces)
+    weights = np.zeros((len(points), 8), np.float32)
+    weights[:, 0] = 1
+    picture = np.stack([gray, gray, gray, np.full_like(gray, 255)], axis=2).astype(np.uint8)
+    return Character("sheet", ONE_JOINT, mesh, np.zeros((len(points), 8), np.int32), weights, picture), gray / 255
+
+
+@pytest.mark.parametrize("wide", [1.5, 2.0, 4.0])
+def test_checks_come_out_at_least_as_sharp_as_under_a_texture_of_as_many_texels(wide: float) -> None:
+    texels, side = 32, 160
+    character, gray = checked_sheet(texels, wide)
+    teacher = StillTeacher(character, texels=texels)
+    frame = teacher.frame(character.skeleton.bind_pose)
+    splats = pose_splats(teacher.rig, frame.mesh, texture=frame.texture, pose=frame.pose)
+    camera = orbit(np.array([[0, 0, 0], [1, 1, 0]]), screen=(side, side), azimuth=0.3, elevation=0.2)
+    row, column = np.mgrid[side // 4 : 3 * side // 4, side // 4 : 3 * side // 4]
+    shown = render_premultiplied(splats, camera)[row, column, 0]
+    corners = np.array([[0.0, 0, 0, 1], [1, 0, 0, 1], [0, 1, 0, 1]]) @ (camera.projection @ camera.view).T
+    axes = np.stack([corners[1] - corners[0], corners[2] - corners[0], corners[0]])[:, [0, 1, 3]]
+    x, y = (column + 0.5) / side * 2 - 1, 1 - (row + 0.5) / side * 2
+    seen = np.stack([x, y, np.ones_like(x)], axis=-1) @ np.linalg.inv(axes)
+    u, v = 0.1 + 0.8 * seen[..., 0] / seen[..., 2], 0.9 - 0.8 * seen[..., 1] / seen[..., 2]
+    there = map_coordinates(gray, [len(gray) * v - 0.5, len(gray) * u - 0.5], order=1)
+    means = gray.reshape(texels, 16, texels, 16).mean(axis=(1, 3))
+    textured = map_coordinates(means, [texels * v - 0.5, texels * u - 0.5], order=1)
+    assert np.mean((shown - there) ** 2) < np.mean((textured - there) ** 2)
+    assert shown.std() > 0.5 * there.std()
 
 
 def test_lines_of_a_picture_change_nothing_that_moves() -> None:
