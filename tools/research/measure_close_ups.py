@@ -148,7 +148,7 @@ def as_textured(character: Character, texels: int) -> tuple[Part, Material]:
 def close_ups(
     path: Path, *, texels: int, size: int, avatar: Avatar | None, motion: Sequence[Path]
 ) -> Iterator[tuple[str, Array, list[Figures]]]:
-    """Each part from each side in each pose: its name, images [size, n size, 3] in 0..1, and how the bound and splats differ."""
+    """Each part from each side in each pose: its name, images [size, n size, 3], the figures of bound and splats."""
     character = load_character(path, uv="auto", seed=0, detail=read_detail((), uv="auto"))
     if character.source is None:
         raise SystemExit(f"{path}: this format keeps nothing to compare with")
