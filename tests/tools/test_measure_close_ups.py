@@ -45,8 +45,9 @@ def test_writes_each_part_from_each_side(
     character = shared_data.path("characters/lumberjack.glb")
     main([str(character), "--texels", "64", "--size", "96", "-o", str(tmp_path)])
     names = sorted(file.stem for file in tmp_path.glob("*.png"))
-    parts = ("head", "hand", "hem") if "lumberjack hem front" in names else ("head", "hand")
-    assert names == sorted(f"lumberjack {part} {side}" for part in parts for side in ("front", "behind"))
+    figure = "lumberjack as the file stands"
+    parts = ("head", "hand", "hem") if f"{figure} hem front" in names else ("head", "hand")
+    assert names == sorted(f"{figure} {part} {side}" for part in parts for side in ("front", "behind"))
     for name in names:
         source, splats = np.split(np.asarray(Image.open(tmp_path / f"{name}.png")).astype(int), 2, axis=1)
         assert np.ptp(source) > 100  # the part is in the image
