@@ -50,7 +50,9 @@ def test_a_material_that_shows_nothing_is_left_out_and_named() -> None:
     picture[..., 3] = 0
     surfaces = card(picture, "blend")
     left = without_unseen(surfaces)
-    assert left.notes[-1] == "Material material 0 is fully transparent (its alpha is 0) and is left out."
+    assert left.notes[-1] == (
+        "Material material 0 is fully transparent (its alpha is 0) and is left out; --alpha material 0=opaque shows it."
+    )
     assert [material.name for material in left.materials] == ["material 1"]
     assert (left.face_material == 0).all()
     assert left.vertices[:, 0].min() == 2

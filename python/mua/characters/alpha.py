@@ -1,0 +1,132 @@
+"""What becomes of a material's alpha: what its file says, unless that hides the figure or the user says otherwise."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from difflib import SequenceMatcher
+from pathlib import Path
+from typing import Literal, TypeAlias, get_args
+
+import numpy as np
+
+from mua.atlas.pictures import opaque
+from mua.characters.messages import Messages, listed
+from mua.errors import InputError
+from mua.scene import AlphaMode, Material, Part, Scene
+
+Alpha: TypeAlias = Literal["opaque", "cut", "blend", "skip"]
+Alphas: TypeAlias = Mapping[str, Alpha]  # by the name of a material
+
+NOTHING_SAID: Alphas = {}
+MODES: dict[Alpha, AlphaMode] = {"opaque": "opaque", "cut": "mask", "blend": "blend"}
+FEWEST = 0.05  # share of the triangles: where a file's alphas leave fewer to be seen, they mean nothing
+HIDING = "The file's alpha hides {} and is ignored (--alpha MATERIAL=blend or =cut heeds it): {{}}."
+TREATED = "Transparent materials (--alpha MATERIAL=opaque, cut, blend or skip treats one otherwise): {}."
+
+
+def read_alphas(texts: Sequence[str]) -> dict[str, Alpha]:
+    """Parse `hair=cut` and the like; raises an InputError for what is not one of the four, or a name given twice."""
+    found: dict[str, Alpha] = {}
+    for text in texts:
+        name, _, treated = text.rpartition("=")
+        alpha = next((one for one in get_args(Alpha) if one == treated), None)
+        if not name or alpha is None:
+            raise InputError(
+                f"--alpha {text}: expected a material and one of {', '.join(get_args(Alpha))}, such as hair=cut"
+            )
+        if name in found:
+            raise InputError(f"--alpha {text}: {name} is named more than once")
+        found[name] = alpha
+    return found
+
+
+def with_stated_opacity(material: Material, opacity: float) -> Material:
+    """The material with an opacity that its file states as a number, beside which the image's alpha does not count.
+
+    Where it is 0 or 1 the image keeps that alpha, for a user who asks for it.
+    """
+    if opacity >= 1:
+        return replace(material, alpha_mode="opaque")
+    image = material.image if opacity <= 0 else opaque(material.image)
+    return replace(material, image=image, opacity=opacity)
+
+
+def with_alphas(scene: Scene, alphas: Alphas, path: Path) -> Scene:
+    """The scene with the opacity of each material in its image, less those to skip; notes say what is transparent.
+
+    Raises an InputError that names `path` and the materials there are, where none has one of the names.
+    """
+    used = {part.material for part in scene.parts}
+    names = dict.fromkeys(scene.materials[m].name for m in sorted(used))
+    for name, alpha in alphas.items():
+        if name not in names:
+            raise InputError(
+                f"{path}: --alpha {name}={alpha}: no material has this name; there are {_nearest_first(name, names)}"
+            )
+    skipped = {m for m in used if alphas.get(scene.materials[m].name) == "skip"}
+    parts = tuple(part for part in scene.parts if part.material not in skipped)
+    materials = tuple(_asked(material, alphas.get(material.name)) for material in scene.materials)
+    left_to_file = {m for m in used if scene.materials[m].name not in alphas}
+    seen, count = (sum(len(part.faces) for part in some) for some in (_seen(parts, materials), parts))
+    notes = Messages()
+    if left_to_file and seen < FEWEST * count:
+        hidden = {p.material for p in parts} & left_to_file - {p.material for p in _seen(parts, materials)}
+        for m in sorted(hidden):
+            notes.add(HIDING.format("most of the figure" if seen else "the whole figure"), materials[m].name)
+        materials = tuple(replace(one, alpha_mode="opaque") if m in hidden else one for m, one in enumerate(materials))
+    parts = tuple(_without_opacity(part) if materials[part.material].alpha_mode == "opaque" else part for part in parts)
+    materials = tuple(_settled(material) for material in materials)
+    for part in parts:
+        treated = _treated(part, materials[part.material])
+        if treated:
+            notes.add(TREATED, treated)
+    return replace(scene, parts=parts, materials=materials, notes=(*scene.notes, *notes.notes()))
+
+
+def _asked(material: Material, alpha: Alpha | None) -> Material:
+    """The material as a user asks for it, whose word counts more than an opacity of 0."""
+    if alpha is None or alpha == "skip":
+        return material
+    return replace(material, alpha_mode=MODES[alpha], opacity=material.opacity or 1.0)
+
+
+def _settled(material: Material) -> Material:
+    """The material with all of its opacity in the image."""
+    if material.alpha_mode == "opaque":
+        return replace(material, image=opaque(material.image), opacity=1.0)
+    alpha = np.rint(material.image[..., 3] * np.clip(material.opacity, 0, 1)).astype(np.uint8)
+    return replace(material, image=np.dstack([material.image[..., :3], alpha]), opacity=1.0)
+
+
+def _seen(parts: Sequence[Part], materials: Sequence[Material]) -> list[Part]:
+    """The parts that are not clear all over."""
+    return [part for part in parts if _most_opaque(part, materials[part.material]) >= materials[part.material].least]
+
+
+def _most_opaque(part: Part, material: Material) -> float:
+    """The largest opacity of a part, of 255."""
+    if material.alpha_mode == "opaque":
+        return 255.0
+    own = 1.0 if part.colors is None else float(part.colors[..., 3].max(initial=0))
+    return float(material.image[..., 3].max()) * material.opacity * own
+
+
+def _without_opacity(part: Part) -> Part:
+    """The part with vertex colours that are opaque."""
+    if part.colors is None:
+        return part
+    colors = part.colors.copy()
+    colors[..., 3] = 1
+    return replace(part, colors=None if (colors == 1).all() else colors)
+
+
+def _treated(part: Part, material: Material) -> str:
+    """How the alpha of a part is treated, such as `hair cut at 0.5`; empty where it is opaque."""
+    least = float(material.image[..., 3].min()) * (1.0 if part.colors is None else part.colors[..., 3].min(initial=1))
+    if material.alpha_mode == "mask":
+        return f"{material.name} cut at {material.alpha_cutoff:g}" if least < material.least else ""
+    return f"{material.name} blended" if least < 255 else ""
+
+
+def _nearest_first(name: str, names: Mapping[str, object]) -> str:
+    """The names as an enumeration, those most like `name` first."""
+    return listed(sorted(names, key=lambda one: -SequenceMatcher(None, name.lower(), one.lower()).ratio()))
