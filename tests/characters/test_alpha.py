@@ -20,7 +20,7 @@ STORED = (40, 127, 200)  # the alphas of a picture's texels
 FACES = 10  # of each part
 WORDS = (("opaque", "opaque", [255] * 3), ("cut", "mask", STORED), ("blend", "blend", STORED))
 TREATED = "Transparent materials (--alpha MATERIAL=opaque, cut, blend or skip treats one otherwise): "
-HIDING = "is ignored (--alpha MATERIAL=blend or =cut heeds it): "
+HIDING = "Alpha would hide the figure and is ignored (--alpha MATERIAL=blend or =cut heeds it), in materials: "
 
 
 def material(name: str, *, mode: AlphaMode = "opaque", opacity: float = 1.0) -> Material:
@@ -61,8 +61,9 @@ def test_a_user_says_otherwise_whatever_the_file_says(mode: AlphaMode, opacity: 
         _, hair = read(whole, hair=asked).materials
         assert hair.alpha_mode == alpha
         assert hair.image[0, :, 3].tolist() == list(expected)
-    assert [one.name for one in read(whole, hair="skip").materials] == ["skin"]
-    assert len(read(whole, hair="skip").faces) == FACES
+    left = read(whole, HAIR="skip")
+    assert [one.name for one in left.materials] == ["skin"]
+    assert len(left.faces) == FACES
 
 
 def test_an_unknown_material_is_refused_with_those_there_are() -> None:
@@ -82,8 +83,8 @@ def test_a_value_that_is_none_of_the_four_is_refused(wrong: str) -> None:
 
 def test_names_may_hold_signs_and_count_once() -> None:
     assert read_alphas(["a=b=cut", "c.1=skip"]) == {"a=b": "cut", "c.1": "skip"}
-    with pytest.raises(InputError, match="--alpha hair=blend: hair is named more than once"):
-        read_alphas(["hair=cut", "hair=blend"])
+    with pytest.raises(InputError, match="--alpha Hair=blend: Hair is named more than once"):
+        read_alphas(["hair=cut", "Hair=blend"])
 
 
 def test_what_is_transparent_is_noted() -> None:
@@ -98,7 +99,7 @@ def test_alpha_that_hides_the_whole_figure_is_ignored(mode: AlphaMode) -> None:
     hidden = figure_of(material("skin", mode=mode, opacity=0), material("hair", mode=mode, opacity=0.004))
     found = read(hidden)
     assert opacities(found) == {"skin": [255] * 3, "hair": [255] * 3}
-    assert found.notes[-1] == f"The file's alpha hides the whole figure and {HIDING}skin, hair."
+    assert found.notes[-1] == f"{HIDING}skin, hair."
     asked = read(hidden, hair="blend")
     assert opacities(asked) == {"skin": [255] * 3, "hair": [0, 1, 1]}
 

@@ -19,7 +19,7 @@ Alphas: TypeAlias = Mapping[str, Alpha]  # by the name of a material
 NOTHING_SAID: Alphas = {}
 MODES: dict[Alpha, AlphaMode] = {"opaque": "opaque", "cut": "mask", "blend": "blend"}
 FEWEST = 0.05  # share of the triangles: where a file's alphas leave fewer to be seen, they mean nothing
-HIDING = "The file's alpha hides {} and is ignored (--alpha MATERIAL=blend or =cut heeds it): {{}}."
+HIDING = "Alpha would hide the figure and is ignored (--alpha MATERIAL=blend or =cut heeds it), in materials: {}."
 TREATED = "Transparent materials (--alpha MATERIAL=opaque, cut, blend or skip treats one otherwise): {}."
 
 
@@ -33,7 +33,7 @@ def read_alphas(texts: Sequence[str]) -> dict[str, Alpha]:
             raise InputError(
                 f"--alpha {text}: expected a material and one of {', '.join(get_args(Alpha))}, such as hair=cut"
             )
-        if name in found:
+        if name.lower() in map(str.lower, found):
             raise InputError(f"--alpha {text}: {name} is named more than once")
         found[name] = alpha
     return found
@@ -53,33 +53,30 @@ def with_stated_opacity(material: Material, opacity: float) -> Material:
 def with_alphas(scene: Scene, alphas: Alphas, path: Path) -> Scene:
     """The scene with the opacity of each material in its image, less those to skip; notes say what is transparent.
 
-    Raises an InputError that names `path` and the materials there are, where none has one of the names.
+    Names count in upper or lower case. Raises an InputError that names `path` and the materials there are, where none
+    has one of the names.
     """
-    used = {part.material for part in scene.parts}
-    names = dict.fromkeys(scene.materials[m].name for m in sorted(used))
+    names = tuple(dict.fromkeys(scene.materials[part.material].name for part in scene.parts))
     for name, alpha in alphas.items():
-        if name not in names:
+        if name.lower() not in {there.lower() for there in names}:
             raise InputError(
                 f"{path}: --alpha {name}={alpha}: no material has this name; there are {_nearest_first(name, names)}"
             )
-    skipped = {m for m in used if alphas.get(scene.materials[m].name) == "skip"}
-    parts = tuple(part for part in scene.parts if part.material not in skipped)
-    materials = tuple(_asked(material, alphas.get(material.name)) for material in scene.materials)
-    left_to_file = {m for m in used if scene.materials[m].name not in alphas}
-    seen, count = (sum(len(part.faces) for part in some) for some in (_seen(parts, materials), parts))
+    asked = {name.lower(): alpha for name, alpha in alphas.items()}
+    of = [asked.get(material.name.lower()) for material in scene.materials]
+    parts = tuple(part for part in scene.parts if of[part.material] != "skip")
+    materials = [_asked(material, alpha) for material, alpha in zip(scene.materials, of, strict=True)]
     notes = Messages()
-    if left_to_file and seen < FEWEST * count:
-        hidden = {p.material for p in parts} & left_to_file - {p.material for p in _seen(parts, materials)}
-        for m in sorted(hidden):
-            notes.add(HIDING.format("most of the figure" if seen else "the whole figure"), materials[m].name)
-        materials = tuple(replace(one, alpha_mode="opaque") if m in hidden else one for m, one in enumerate(materials))
+    for m in _hiding(parts, materials, {m for m, alpha in enumerate(of) if alpha is None}):
+        materials[m] = replace(materials[m], alpha_mode="opaque")
+        notes.add(HIDING, materials[m].name)
     parts = tuple(_without_opacity(part) if materials[part.material].alpha_mode == "opaque" else part for part in parts)
-    materials = tuple(_settled(material) for material in materials)
+    materials = [_settled(material) for material in materials]
     for part in parts:
         treated = _treated(part, materials[part.material])
         if treated:
             notes.add(TREATED, treated)
-    return replace(scene, parts=parts, materials=materials, notes=(*scene.notes, *notes.notes()))
+    return replace(scene, parts=parts, materials=tuple(materials), notes=(*scene.notes, *notes.notes()))
 
 
 def _asked(material: Material, alpha: Alpha | None) -> Material:
@@ -89,17 +86,20 @@ def _asked(material: Material, alpha: Alpha | None) -> Material:
     return replace(material, alpha_mode=MODES[alpha], opacity=material.opacity or 1.0)
 
 
+def _hiding(parts: Sequence[Part], materials: Sequence[Material], doubted: set[int]) -> list[int]:
+    """Those of the materials `doubted` that show nothing, where hardly anything else of a figure shows either."""
+    clear = [part for part in parts if _most_opaque(part, materials[part.material]) < materials[part.material].least]
+    hidden, count = (sum(len(part.faces) for part in some) for some in (clear, parts))
+    few_seen = count - hidden < FEWEST * count
+    return sorted({part.material for part in clear} & doubted) if few_seen else []
+
+
 def _settled(material: Material) -> Material:
     """The material with all of its opacity in the image."""
     if material.alpha_mode == "opaque":
         return replace(material, image=opaque(material.image), opacity=1.0)
     alpha = np.rint(material.image[..., 3] * np.clip(material.opacity, 0, 1)).astype(np.uint8)
     return replace(material, image=np.dstack([material.image[..., :3], alpha]), opacity=1.0)
-
-
-def _seen(parts: Sequence[Part], materials: Sequence[Material]) -> list[Part]:
-    """The parts that are not clear all over."""
-    return [part for part in parts if _most_opaque(part, materials[part.material]) >= materials[part.material].least]
 
 
 def _most_opaque(part: Part, material: Material) -> float:
@@ -127,6 +127,6 @@ def _treated(part: Part, material: Material) -> str:
     return f"{material.name} blended" if least < 255 else ""
 
 
-def _nearest_first(name: str, names: Mapping[str, object]) -> str:
+def _nearest_first(name: str, names: Sequence[str]) -> str:
     """The names as an enumeration, those most like `name` first."""
     return listed(sorted(names, key=lambda one: -SequenceMatcher(None, name.lower(), one.lower()).ratio()))
