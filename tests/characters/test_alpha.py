@@ -141,3 +141,9 @@ def test_an_fbx_with_opacity_0_gets_the_alpha_of_its_picture_back(tmp_path: Path
     for asked, expected in (([], 255), (["cloth=blend"], 100)):
         (found,) = read_surfaces(path, alphas=read_alphas(asked)).materials
         assert found.image[0, 0].tolist() == [10, 60, 200, expected]
+
+
+def test_all_of_many_transparent_materials_are_named_once() -> None:
+    names = [f"card{k}" for k in range(12)]
+    whole = figure_of(*(material(name, mode="blend") for name in (*names, names[0])))
+    assert read(whole).notes[-1] == TREATED + ", ".join(f"{name} blended" for name in names) + "."

@@ -66,17 +66,16 @@ def with_alphas(scene: Scene, alphas: Alphas, path: Path) -> Scene:
     of = [asked.get(material.name.lower()) for material in scene.materials]
     parts = tuple(part for part in scene.parts if of[part.material] != "skip")
     materials = [_asked(material, alpha) for material, alpha in zip(scene.materials, of, strict=True)]
-    notes = Messages()
+    ignored = Messages()
     for m in _hiding(parts, materials, {m for m, alpha in enumerate(of) if alpha is None}):
         materials[m] = replace(materials[m], alpha_mode="opaque")
-        notes.add(HIDING, materials[m].name)
+        ignored.add(HIDING, materials[m].name)
     parts = tuple(_without_opacity(part) if materials[part.material].alpha_mode == "opaque" else part for part in parts)
     materials = [_settled(material) for material in materials]
-    for part in parts:
-        treated = _treated(part, materials[part.material])
-        if treated:
-            notes.add(TREATED, treated)
-    return replace(scene, parts=parts, materials=tuple(materials), notes=(*scene.notes, *notes.notes()))
+    treated = dict.fromkeys(_treated(part, materials[part.material]) for part in parts)
+    clear = [TREATED.format(", ".join(filter(None, treated)))] if any(treated) else []
+    notes = (*scene.notes, *ignored.notes(), *clear)
+    return replace(scene, parts=parts, materials=tuple(materials), notes=notes)
 
 
 def _asked(material: Material, alpha: Alpha | None) -> Material:
