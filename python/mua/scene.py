@@ -14,17 +14,25 @@ from mua.errors import InputError
 Wrap: TypeAlias = Literal["repeat", "clamp", "mirror"]
 AlphaMode: TypeAlias = Literal["opaque", "mask", "blend"]
 
+CLEAR = 3  # of 255: what is fainter is not seen, and its colour means nothing
+
 
 @dataclass(frozen=True, eq=False)
 class Material:
     """Base colour of some faces: an image with the material's factor already multiplied in."""
 
     name: str
-    image: Array  # [h, w, 4] uint8 sRGB, at least 1 x 1; alpha is opacity (255 where the material is opaque)
+    image: Array  # [h, w, 4] uint8 sRGB, at least 1 x 1; as it leaves mua.characters, alpha is opacity
     wrap_u: Wrap = "repeat"
     wrap_v: Wrap = "repeat"
     alpha_mode: AlphaMode = "blend"  # mask: solid where alpha is at least the cut-off, clear elsewhere
     alpha_cutoff: float = 0.5
+    opacity: float = 1.0  # what the file multiplies alpha by, where it is not in the image
+
+    @property
+    def least(self) -> float:
+        """The least opacity, of 255, that is seen."""
+        return 255 * self.alpha_cutoff if self.alpha_mode == "mask" else CLEAR
 
 
 def wrapped(index: Array, count: int, wrap: Wrap) -> Array:

@@ -50,7 +50,9 @@ def test_a_material_that_shows_nothing_is_left_out_and_named() -> None:
     picture[..., 3] = 0
     surfaces = card(picture, "blend")
     left = without_unseen(surfaces)
-    assert left.notes[-1] == "Material material 0 is fully transparent (its alpha is 0) and is left out."
+    assert left.notes[-1] == (
+        "Material material 0 is fully transparent (its alpha is 0) and is left out; --alpha material 0=opaque shows it."
+    )
     assert [material.name for material in left.materials] == ["material 1"]
     assert (left.face_material == 0).all()
     assert left.vertices[:, 0].min() == 2
@@ -144,6 +146,31 @@ def test_a_mask_is_solid_from_its_cutoff_on() -> None:
     u = place[:, 0]
     assert (colours[(u < 0.22), 3] == 0).all()
     assert (colours[(u > 0.30) & (u < 1.5), 3] == 255).all()
+
+
+def by_width(surfaces: Surfaces) -> Surfaces:
+    """The same, its vertices as opaque as they are far to the right on their sheet."""
+    colors = np.ones((len(surfaces.faces), 3, 4))
+    colors[..., 3] = np.clip(surfaces.vertices[surfaces.faces][..., 0], 0, 1)
+    return replace(surfaces, corner_colors=colors)
+
+
+def test_a_mask_is_cut_where_picture_times_vertices_is_below_the_cutoff() -> None:
+    surfaces = by_width(card(plain(9, 9, 9, 204), "mask"))  # 0.8, and so 0.5 where the vertices have 0.625
+    character = build_atlas(surfaces, uv="keep", size=64)
+    texels, colours = texels_and_colours(character)
+    across = points(character, texels)[:, 0]
+    assert (colours[across < 0.6, 3] == 0).all()
+    assert (colours[(across > 0.65) & (across < 1.5), 3] == 255).all()
+
+
+def test_triangles_whose_vertices_are_clear_are_left_out() -> None:
+    surfaces = by_width(card(plain(9, 9, 9, 255), "mask", cells=10))  # solid from the middle on
+    left = without_unseen(surfaces)
+    on_card = left.vertices[left.vertices[:, 0] < 1.5]
+    assert on_card[:, 0].min() == pytest.approx(0.4)  # of the triangles that reach into the solid half
+    assert left.corner_colors is not None
+    assert len(left.corner_colors) == len(left.faces)
 
 
 def test_no_colour_of_what_is_clear_reaches_the_texels() -> None:

@@ -46,9 +46,10 @@ class Reached(Exception):
 
 
 def with_hat(directory: Path) -> None:
-    """A column with two clips, and a second column beside it that is called hat."""
+    """A column with two clips, and a second column beside it that is called hat and is of felt."""
     glb = gltf_files.body()
-    glb.json["meshes"].append({**glb.json["meshes"][0], "name": "hat"})
+    glb.json["materials"] = [{"name": "felt"}]
+    glb.json["meshes"].append({"name": "hat", "primitives": [gltf_files.primitive(glb) | {"material": 0}]})
     glb.json["nodes"].append({"mesh": 1, "skin": 0, "name": "hat", "translation": [0.5, 0, 0]})
     glb.json["scenes"][0]["nodes"].append(4)
     time = glb.accessor(np.linspace(0, 1, 2))

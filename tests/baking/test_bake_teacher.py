@@ -67,6 +67,7 @@ def test_a_capture_becomes_an_avatar_and_so_does_its_teacher(capture: Path, tmp_
         (("{capture}", "--uv", "unwrap"), "--uv: the capture's own capture.json says it"),
         (("{capture}", "--detail", "head=2"), "--detail: the capture's own capture.json says it"),
         (("{capture}", "--leave-out", "hat"), "--leave-out: the capture's own capture.json says it"),
+        (("{capture}", "--alpha", "hair=cut"), "--alpha: the capture's own capture.json says it"),
         (("{capture}", "--check"), "mua-capture check"),
         (("--teacher", "{teacher}"), "give the motion to record with --motion"),
         (("hero.glb", "--teacher", "{teacher}"), "has its own character; leave hero.glb out"),

@@ -195,6 +195,23 @@ def test_two_skeletons_are_one_character(plain: Path) -> None:
     np.testing.assert_allclose(surfaces.vertices.min(axis=0)[2], -0.58, atol=1e-6)
 
 
+def test_material_that_reads_opacity_of_points_gets_it(plain: Path) -> None:
+    def read(stage: Usd.Stage) -> None:
+        shader = preview(stage, "/Man/Glass", body(stage).GetPrim())
+        reader = UsdShade.Shader.Define(stage, "/Man/Glass/Reader")
+        reader.CreateIdAttr("UsdPrimvarReader_float")
+        reader.CreateInput("varname", Sdf.ValueTypeNames.String).Set("clarity")
+        result = reader.CreateOutput("result", Sdf.ValueTypeNames.Float)
+        shader.CreateInput("opacity", Sdf.ValueTypeNames.Float).ConnectToSource(result)
+        heights = [p[2] / 150 for p in body(stage).GetPointsAttr().Get()]
+        primvars = UsdGeom.PrimvarsAPI(body(stage))
+        primvars.CreatePrimvar("clarity", Sdf.ValueTypeNames.FloatArray, UsdGeom.Tokens.vertex).Set(heights)
+
+    surfaces = read_surfaces(edited(plain, read))
+    assert surfaces.corner_colors is not None
+    np.testing.assert_allclose(surfaces.corner_colors[..., 3], corner_heights(surfaces) / 1.5, atol=1e-6)
+
+
 @pytest.mark.parametrize("wrap", ["mirror", "repeat"])
 def test_glow_lies_where_the_colour_does_or_is_left_out_by_name(tmp_path: Path, wrap: str) -> None:
     path = write_character(tmp_path / "man.usda")

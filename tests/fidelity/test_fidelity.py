@@ -116,6 +116,15 @@ def test_corner_colours_multiply_the_picture_as_light(context: moderngl.Context)
     np.testing.assert_allclose(image[4, 4], np.array([half, half, 0, 1]) * 0.5, atol=2 * EIGHT_BITS)
 
 
+@pytest.mark.parametrize(("opacity", "seen"), [(0.6, 0), (0.7, 1)])
+def test_a_mask_is_cut_where_picture_times_corners_is_below_the_cutoff(
+    context: moderngl.Context, opacity: float, seen: int
+) -> None:
+    part = replace(card(depth=0), colors=np.tile([1, 1, 1, opacity], (2, 3, 1)))
+    veil = replace(plain(255, 255, 255, 200), alpha_mode="mask", alpha_cutoff=0.5)  # 0.78 of it
+    np.testing.assert_allclose(drawn(context, [part], [veil])[4, 4], [seen] * 4, atol=EIGHT_BITS)
+
+
 def test_a_pixel_is_covered_by_the_share_of_its_samples(context: moderngl.Context) -> None:
     image = drawn(
         context, [card(depth=0, low=-1 / 27)], [plain(255, 255, 255, 255)]

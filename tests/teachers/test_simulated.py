@@ -18,13 +18,12 @@ from mua.rig.bones import fit_bones
 from mua.rig.character import Character
 from mua.rig.rig import Rig
 from mua.teacher import TeacherFrame
-from mua.teachers.simulated import texels
 from mua.teachers.simulated.chords import SEEN
 from mua.teachers.simulated.folds import Folds
 from mua.teachers.simulated.simulation import Simulation
 from mua.teachers.simulated.still import StillTeacher
 from mua.teachers.simulated.teacher import SimulatedTeacher
-from mua.texture import ends, rims
+from mua.texture import depths, ends, rims
 
 SIZE = 48
 SINGLE = 32 * float(np.finfo(np.float32).eps)  # metres; sums of some ten terms of up to 2 m
@@ -51,7 +50,7 @@ def teacher() -> SimulatedTeacher:
 @pytest.fixture
 def unsunk(monkeypatch: pytest.MonkeyPatch) -> None:
     """Splats lie on the surface and not a little below it, at their texels' points along all borders too."""
-    monkeypatch.setattr(texels, "SINK", 0.0)
+    monkeypatch.setattr(depths, "SINK", 0.0)
     monkeypatch.setattr(rims, "FARTHEST", 0.0)
     monkeypatch.setattr(ends, "LEAST", 1.0)
 
@@ -106,8 +105,8 @@ def test_splats_lie_below_the_surface_by_a_share_of_their_smaller_deviation(
 ) -> None:
     frame = whole_frames(teacher, still(tube()))[-1]
     sunk, rotations = posed(teacher.rig, frame)
-    share = texels.SINK
-    monkeypatch.setattr(texels, "SINK", 0.0)
+    share = depths.SINK
+    monkeypatch.setattr(depths, "SINK", 0.0)
     unsunk = SimulatedTeacher(tube(looseness=0.6), texels=SIZE)
     on_surface, _ = posed(unsunk.rig, whole_frames(unsunk, still(tube()))[-1])
     smaller = np.exp(frame.texture[:, 7:9]).min(axis=1, keepdims=True)

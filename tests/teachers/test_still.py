@@ -17,6 +17,7 @@ from mua.rig.character import Character, Mesh
 from mua.rig.texel_map import build_texel_map
 from mua.teachers.simulated import texels
 from mua.teachers.simulated.still import StillTeacher
+from mua.texture import depths
 from mua.texture.sharpness import SPREAD, Sharpness
 
 SCREEN = (96, 256)  # pixels
@@ -52,7 +53,7 @@ def test_a_silhouette_is_as_wide_as_the_surface(monkeypatch: pytest.MonkeyPatch)
     """A tube of 40 sides, on which splats of 7 x 12 mm lie."""
     alpha, scale = alpha_of(40)
     assert width(alpha) == pytest.approx(2 * RADIUS * scale, abs=0.3)  # of a pixel of 8 mm
-    monkeypatch.setattr(texels, "SINK", 0.0)
+    monkeypatch.setattr(depths, "SINK", 0.0)
     swollen, _ = alpha_of(40)
     assert width(swollen) > width(alpha) + 0.5
 

@@ -27,16 +27,18 @@ def bake_texture(
     picture = np.zeros((texels.size * texels.size, 4), np.uint8)
     points = np.einsum("nk,nkd->nd", texels.barycentrics, corners[texels.triangles])
     for index, material in enumerate(materials):
-        rows = face_material[texels.triangles] == index
-        if rows.any():
-            picture[texels.texels[rows]] = _sample(
-                _averaged(material, corners[face_material == index], int(rows.sum())),
-                points[rows],
-                wraps=(material.wrap_u, material.wrap_v),
-            )
-    if colors is not None:
-        factors = np.einsum("nk,nkc->nc", texels.barycentrics, colors[texels.triangles])
-        picture[texels.texels] = multiplied(picture[texels.texels], factors)
+        rows, faces = face_material[texels.triangles] == index, face_material == index
+        if not rows.any():
+            continue
+        thinned = material.alpha_mode == "mask" and colors is not None and colors[faces, :, 3].min() < 1
+        image = _averaged(material, corners[faces], int(rows.sum()), cut=not thinned)
+        found = _sample(image, points[rows], wraps=(material.wrap_u, material.wrap_v))
+        if colors is not None:
+            factors = np.einsum("nk,nkc->nc", texels.barycentrics[rows], colors[texels.triangles[rows]])
+            found = multiplied(found, factors)
+        if thinned:
+            found[:, 3] = np.where(found[:, 3] >= material.least, 255, 0)
+        picture[texels.texels[rows]] = found
     empty = np.ones((texels.size, texels.size), bool)
     empty.flat[texels.texels] = False
     return filled(picture.reshape(texels.size, texels.size, 4), empty)
@@ -46,10 +48,12 @@ def _averaged(
     material: Material,
     corners: Array,  # [F, 3, 2] UV of the triangles that use it
     wanted: int,  # texels that these triangles have in the atlas
+    *,
+    cut: bool,  # a mask is cut out already, as vertices do not change its opacity
 ) -> Array:
     """Its image reduced by the whole factor by which it is finer than the atlas, no colour in it foreign: uint8."""
     image, used = material.image, areas(corners).sum()
-    if material.alpha_mode == "mask":
+    if material.alpha_mode == "mask" and cut:
         image = cut_out(material, np.sqrt(used * image.shape[0] * image.shape[1] / wanted))
     return bled(reduced(image, int(np.sqrt(used * image.shape[0] * image.shape[1] / wanted))))
 

@@ -5,8 +5,8 @@ from PIL import Image
 from scipy.ndimage import distance_transform_edt
 
 from mua.arrays import Array
+from mua.scene import CLEAR
 
-CLEAR = 3  # of 255: what is fainter is not seen, and its colour means nothing
 TRACE = 1e-3  # of 255: the weight of clear texels, which decides only where there are no others
 
 

@@ -7,7 +7,7 @@ from PIL import Image
 from scipy.ndimage import maximum_filter
 
 from mua.arrays import Array
-from mua.atlas.filtering import CLEAR, bled
+from mua.atlas.filtering import bled
 from mua.atlas.surfaces import Surfaces
 from mua.errors import InputError
 from mua.scene import Material, wrapped
@@ -32,8 +32,13 @@ def without_unseen(surfaces: Surfaces) -> Surfaces:
         corners = np.zeros((len(faces), 3, 2))
         corners[mapped] = surfaces.uv[surfaces.uv_faces[faces[mapped]]]
         seen[faces] = _seen(material, corners, mapped)
+        if surfaces.corner_colors is not None:
+            seen[faces] &= 255 * surfaces.corner_colors[faces, :, 3].max(axis=1) >= material.least
         if len(faces) and not seen[faces].any():
-            hidden.append(f"Material {material.name} is fully transparent (its alpha is 0) and is left out.")
+            hidden.append(
+                f"Material {material.name} is fully transparent (its alpha is 0) and is left out; "
+                f"--alpha {material.name}=opaque shows it."
+            )
     if seen.all():
         return surfaces
     if not seen.any():
@@ -56,16 +61,11 @@ def cut_out(
     if finer > 1 and image[..., 3].min() < image[..., 3].max():
         size = (width * finer, height * finer)
         image = np.asarray(Image.merge("RGBA", [_enlarged(image[..., k], size) for k in range(4)]))
-    return np.dstack([image[..., :3], np.where(image[..., 3] >= _threshold(material), 255, 0).astype(np.uint8)])
+    return np.dstack([image[..., :3], np.where(image[..., 3] >= material.least, 255, 0).astype(np.uint8)])
 
 
 def _enlarged(plane: Array, size: tuple[int, int]) -> Image.Image:
     return Image.fromarray(np.ascontiguousarray(plane)).resize(size, Image.Resampling.BILINEAR)
-
-
-def _threshold(material: Material) -> float:
-    """The least alpha, of 255, that is seen."""
-    return 255 * material.alpha_cutoff if material.alpha_mode == "mask" else CLEAR
 
 
 def _seen(
@@ -74,7 +74,7 @@ def _seen(
     present: Array,  # [n] bool, there are UVs
 ) -> Array:
     """Whether any texel under each triangle [n] shows; never False for one that is seen."""
-    shows = material.image[..., 3] >= _threshold(material)
+    shows = material.image[..., 3] >= material.least
     if shows.all() or not shows.any():
         return np.full(len(corners), shows.any())
     maps = _pyramid(maximum_filter(shows, 3, mode="wrap"))

@@ -68,6 +68,14 @@ def bake(
         str | Sequence[str],
         Option("Mesh, node or material of the character file to leave out; may be repeated."),
     ] = (),
+    alpha: Annotated[
+        Mapping[str, str] | Sequence[str],
+        Option(
+            "How a material is transparent, where the file is wrong, such as hair=cut; may be repeated. "
+            "opaque, cut (solid or clear), blend, or skip to leave it out.",
+            default="as the file says",
+        ),
+    ] = (),
     mapping: Annotated[
         PathLike | Mapping[str, str] | None,
         Option(
@@ -113,10 +121,10 @@ def bake(
     """Record a teacher of `character`, distil it and write a `.muaavatar`, as mua-bake does: minutes to hours.
 
     The arguments are the options of mua-bake (docs/bake.md) by the same names, and their errors name the options. Where
-    an option may be repeated, one value or several are given; `mapping` is a file or a dictionary, `detail` is a
-    dictionary such as `{"head": 2}`. Without a `character` the procedural one is baked; where it is the folder of a
-    capture, a teacher is trained first, and a `teacher` is the folder that `mua.teach` wrote. A call that was
-    interrupted goes on where it stopped when the same one is made again.
+    an option may be repeated, one value or several are given; `mapping` is a file or a dictionary, `detail` and
+    `alpha` are dictionaries such as `{"head": 2}`. Without a `character` the procedural one is baked; where it is the
+    folder of a capture, a teacher is trained first, and a `teacher` is the folder that `mua.teach` wrote. A call that
+    was interrupted goes on where it stopped when the same one is made again.
 
     `listener` receives stages, steps and notes; without one they go to the log "mua" of Python's logging.
 

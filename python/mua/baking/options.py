@@ -8,6 +8,7 @@ from typing import Any
 
 from mua.atlas.detail import read_detail
 from mua.baking.settings import BakeSettings
+from mua.characters.alpha import read_alphas
 from mua.characters.facing import Facing
 from mua.characters.figure_size import FigureSize
 from mua.characters.formats import require_scene
@@ -32,6 +33,7 @@ def bake_settings(options: Mapping[str, Any]) -> BakeSettings:
         student=student_settings(options),
         motions=options["motion"],
         mapping=_joints(options["mapping"]),
+        alphas=read_alphas(_as_texts(options["alpha"])),
         detail=read_detail(_as_texts(options["detail"]), uv=options["uv"]),
         facing=Facing(options["facing"], options["turn"]),
         size=FigureSize(scale=options["scale"], height=options["height"]),
@@ -62,7 +64,7 @@ def _check_motion_options(settings: BakeSettings) -> None:
 
 def _with_trained_teacher(settings: BakeSettings, options: Mapping[str, Any]) -> BakeSettings:
     """The settings of a bake whose teacher is, or is going to be, trained on images."""
-    for name in ("uv", "detail", "scale", "height", "facing", "turn", "leave_out"):
+    for name in ("uv", "detail", "scale", "height", "facing", "turn", "leave_out", "alpha"):
         if options[name] not in (None, (), {}, "auto", 0.0):
             raise InputError(
                 f"--{name.replace('_', '-')}: the capture's own capture.json says it; leave the option out"
@@ -95,9 +97,9 @@ def _joints(mapping: Path | Mapping[str, str] | None) -> Mapping[str, str] | Non
     return read_mapping(mapping) if isinstance(mapping, Path) else mapping
 
 
-def _as_texts(detail: Mapping[str, float] | tuple[str, ...]) -> tuple[str, ...]:
-    """Factors by part as the command line has them: head=2."""
-    return tuple(f"{part}={factor}" for part, factor in detail.items()) if isinstance(detail, Mapping) else detail
+def _as_texts(pairs: Mapping[str, object] | tuple[str, ...]) -> tuple[str, ...]:
+    """Values by name as the command line has them: head=2."""
+    return tuple(f"{name}={value}" for name, value in pairs.items()) if isinstance(pairs, Mapping) else pairs
 
 
 def check_inputs(character: Path | None, motions: Sequence[Path]) -> None:

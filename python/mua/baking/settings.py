@@ -8,6 +8,7 @@ from typing import Literal
 from mua.asset.tensors import Storage
 from mua.atlas.detail import Detail, UvMode
 from mua.baking.shared_options import DeviceName
+from mua.characters.alpha import Alphas
 from mua.characters.facing import AS_SHOWN, Facing
 from mua.characters.figure_size import AS_FOUND, FigureSize
 from mua.motion.planted_feet import Feet
@@ -33,6 +34,7 @@ class BakeSettings:
     feet: Feet = "auto"  # whether feet are held where the motion's feet stand
     motion_range: MotionRange = "full"  # whether a range of motion made for the rig is recorded too
     leave_out: tuple[str, ...] = ()  # meshes, nodes or materials of the file that are no part of the character
+    alphas: Alphas = field(default_factory=dict)  # how materials are transparent, where the file is wrong
     uv: UvMode = "auto"
     detail: Detail = field(default_factory=dict)  # beyond what is finer by default
     size: FigureSize = AS_FOUND

@@ -6,6 +6,7 @@ from pathlib import Path
 from mua.asset.storable import require_names
 from mua.atlas.detail import Detail, UvMode
 from mua.baking.settings import BakeSettings
+from mua.characters.alpha import NOTHING_SAID, Alphas
 from mua.characters.facing import AS_SHOWN, Facing
 from mua.characters.figure_size import AS_FOUND, FigureSize
 from mua.characters.read import read_character
@@ -30,6 +31,7 @@ def load_baked_character(settings: BakeSettings) -> Character:
         detail=settings.detail,
         size=settings.size,
         leave_out=settings.leave_out,
+        alphas=settings.alphas,
         facing=settings.facing,
     )
 
@@ -42,16 +44,24 @@ def load_character(
     detail: Detail | None = None,
     size: FigureSize = AS_FOUND,
     leave_out: Sequence[str] = (),
+    alphas: Alphas = NOTHING_SAID,
     facing: Facing = AS_SHOWN,
 ) -> Character:
     """The character in the file at `path` less what `leave_out` names, or the procedural one where no path is given.
 
-    Errors: InputError where a size, a direction or something to leave out is given for the procedural one, and for
-    names that no avatar file may have.
+    Errors: InputError where a size, a direction, an alpha or something to leave out is given for the procedural one,
+    and for names that no avatar file may have.
     """
     if path is not None:
         character = read_character(
-            path, uv=uv, atlas_size=ATLAS, detail=detail, size=size, leave_out=leave_out, facing=facing
+            path,
+            uv=uv,
+            atlas_size=ATLAS,
+            detail=detail,
+            size=size,
+            leave_out=leave_out,
+            alphas=alphas,
+            facing=facing,
         )
         require_names(str(path), [character.name], character.skeleton.names, ())
         return character
@@ -61,6 +71,8 @@ def load_character(
         raise InputError("--facing and --turn need a character from a file; give CHARACTER")
     if leave_out:
         raise InputError(f"--leave-out {leave_out[0]}: needs a character from a file; give CHARACTER")
+    for name, alpha in alphas.items():
+        raise InputError(f"--alpha {name}={alpha}: needs a character from a file; give CHARACTER")
     from mua.teachers.procedural import procedural_character  # not to be loaded for a file's sake
 
     return procedural_character(seed=seed)

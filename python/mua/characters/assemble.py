@@ -8,6 +8,7 @@ import numpy as np
 
 from mua.arrays import Array
 from mua.atlas.surfaces import Surfaces
+from mua.characters.alpha import NOTHING_SAID, Alphas, with_alphas
 from mua.characters.bind_pose import Bind, bind_pose
 from mua.characters.collapsed import without_collapsed
 from mua.characters.correction import corrected
@@ -42,13 +43,21 @@ class _Mesh:
     notes: tuple[str, ...]
 
 
-def assemble(scene: Scene, path: Path, *, leave_out: Sequence[str] = (), facing: Facing = AS_SHOWN) -> Surfaces:
+def assemble(
+    scene: Scene,
+    path: Path,
+    *,
+    leave_out: Sequence[str] = (),
+    alphas: Alphas = NOTHING_SAID,
+    facing: Facing = AS_SHOWN,
+) -> Surfaces:
     """Merge a scene's parts into one welded mesh on rigid joints, upright, facing +Z and in metres.
 
-    `leave_out` names meshes, nodes or materials whose triangles are no part of the character.
+    `leave_out` names meshes, nodes or materials whose triangles are no part of the character; `alphas` says how
+    materials are transparent where the file is wrong.
     Raises an InputError that names `path` where no skinned triangle is left, or where it holds no such name.
     """
-    scene = without(scene, leave_out, path)
+    scene = with_alphas(without(scene, leave_out, path), alphas, path)
     if not any(len(part.faces) for part in scene.parts):
         still = any(note.startswith(UNHELD.partition("{")[0]) for note in scene.notes)
         advice = "; add a skeleton in Blender or with Mixamo" if still else ""

@@ -6,7 +6,9 @@ from pathlib import Path
 from mua.atlas.detail import Detail, UvMode
 from mua.atlas.surfaces import Surfaces
 from mua.atlas.uv import build_atlas
+from mua.characters.alpha import NOTHING_SAID, Alphas
 from mua.characters.animation import Animation
+from mua.characters.assemble import assemble
 from mua.characters.facing import AS_SHOWN, Facing
 from mua.characters.fbx.read import read_fbx, read_fbx_animation
 from mua.characters.figure_size import AS_FOUND, FigureSize
@@ -15,25 +17,37 @@ from mua.characters.gltf.read import read_gltf, read_gltf_animation
 from mua.characters.resize import resized
 from mua.characters.skeletool.read import read_skeletool, read_skeletool_motion
 from mua.rig.character import Character
+from mua.scene import Scene
 
 
 def read_surfaces(
-    path: Path, *, size: FigureSize = AS_FOUND, leave_out: Sequence[str] = (), facing: Facing = AS_SHOWN
+    path: Path,
+    *,
+    size: FigureSize = AS_FOUND,
+    leave_out: Sequence[str] = (),
+    alphas: Alphas = NOTHING_SAID,
+    facing: Facing = AS_SHOWN,
 ) -> Surfaces:
     """Read a rigged character by its suffix, less the meshes, nodes or materials that `leave_out` names.
 
-    Raises an InputError where the suffix is unknown, the file is missing or nothing has such a name.
+    `alphas` says how materials are transparent where the file is wrong.
+    Raises an InputError where the suffix is unknown, the file is missing, holds no mesh on a skeleton, or nothing has
+    such a name.
     """
+    return resized(assemble(_scene(path), path, leave_out=leave_out, alphas=alphas, facing=facing), size, path)
+
+
+def _scene(path: Path) -> Scene:
     suffix = require_scene(path)
     if suffix in GLTF:
-        return resized(read_gltf(path, leave_out=leave_out, facing=facing), size, path)
+        return read_gltf(path)
     if suffix == FBX:
-        return resized(read_fbx(path, leave_out=leave_out, facing=facing), size, path)
+        return read_fbx(path)
     if suffix == SKELETOOL:
-        return resized(read_skeletool(path, leave_out=leave_out, facing=facing), size, path)
+        return read_skeletool(path)
     from mua.characters.usd.read import read_usd  # with USD's library, which takes long to load
 
-    return resized(read_usd(path, leave_out=leave_out, facing=facing), size, path)
+    return read_usd(path)
 
 
 def read_animation(path: Path) -> Animation:
@@ -58,8 +72,9 @@ def read_character(
     detail: Detail | None = None,
     size: FigureSize = AS_FOUND,
     leave_out: Sequence[str] = (),
+    alphas: Alphas = NOTHING_SAID,
     facing: Facing = AS_SHOWN,
 ) -> Character:
     """Read a rigged, textured character and bring its materials into one atlas of `atlas_size` texels a side."""
-    surfaces = read_surfaces(path, size=size, leave_out=leave_out, facing=facing)
+    surfaces = read_surfaces(path, size=size, leave_out=leave_out, alphas=alphas, facing=facing)
     return build_atlas(surfaces, uv=uv, size=atlas_size, detail=detail)

@@ -34,6 +34,7 @@ FRAGMENT = """
 uniform sampler2D picture;
 uniform bvec2 mirrored;
 uniform bool solid; // draw what hides all behind it, else the rest
+uniform float cutoff; // of a mask whose vertices change its opacity, else 0
 in vec2 uv;
 in vec4 tint;
 out vec4 color;
@@ -44,6 +45,7 @@ void main()
     vec2 at = mix(uv, 1.0 - abs(mod(uv, 2.0) - 1.0), mirrored);
     vec4 texel = textureGrad(picture, at, dFdx(uv), dFdy(uv));
     texel = vec4(srgb(linear(texel.rgb) * tint.rgb), texel.a * tint.a);
+    if (cutoff > 0.0) texel.a = step(cutoff, texel.a);
     if ((texel.a >= SOLID) != solid) discard;
     color = vec4(texel.rgb * texel.a, texel.a);
 }
@@ -76,7 +78,10 @@ class Painter:
         self._canvas = Canvas(context, screen, samples=SAMPLES, dtype="f1")
         palettes = {part.material for part in parts if _is_palette(part)}
         shown = sorted({part.material for part in parts})
-        self._textures = {m: _texture(context, materials[m], slanted=m not in palettes) for m in shown}
+        self._cut_late = {part.material for part in parts if _is_thinned(part, materials[part.material])}
+        self._textures = {
+            m: _texture(context, materials[m], slanted=m not in palettes, cut=m not in self._cut_late) for m in shown
+        }
         self._pieces = [_piece(part, materials[part.material]) for part in parts]
 
     def __call__(
@@ -111,6 +116,7 @@ class Painter:
         self._textures[piece.material].use()
         set_uniform(self._program, "mirrored", (material.wrap_u == "mirror", material.wrap_v == "mirror"))
         set_uniform(self._program, "solid", solid)
+        set_uniform(self._program, "cutoff", material.alpha_cutoff if piece.material in self._cut_late else 0.0)
         rows = np.concatenate([corners, piece.inputs], axis=1)[order]
         draw(self._program, rows, "3f 2f 4f", ("place", "coordinates", "factor"), mode=moderngl.TRIANGLES)
 
@@ -127,6 +133,11 @@ def _piece(part: Part, material: Material) -> _Piece:
     return _Piece(corners, inputs, part.material, bool(clear))
 
 
+def _is_thinned(part: Part, material: Material) -> bool:
+    """Whether the vertices of a mask change what of it is cut away."""
+    return material.alpha_mode == "mask" and part.colors is not None and bool(part.colors[..., 3].min(initial=1) < 1)
+
+
 def _is_palette(part: Part) -> bool:
     """Whether triangles have all their corners at one place of the texture.
 
@@ -136,8 +147,8 @@ def _is_palette(part: Part) -> bool:
     return bool((np.ptp(part.uv[mapped], axis=1) == 0).all(axis=1).any())
 
 
-def _texture(context: moderngl.Context, material: Material, *, slanted: bool) -> moderngl.Texture:
-    image = cut_out(material, EDGE) if material.alpha_mode == "mask" else bled(material.image)
+def _texture(context: moderngl.Context, material: Material, *, slanted: bool, cut: bool) -> moderngl.Texture:
+    image = cut_out(material, EDGE) if material.alpha_mode == "mask" and cut else bled(material.image)
     factor = -(-max(image.shape[:2]) // LARGEST)
     if factor > 1:
         image = np.asarray(Image.fromarray(image).reduce(factor))

@@ -10,6 +10,7 @@ import ufbx
 
 from mua.arrays import Array
 from mua.atlas import pictures
+from mua.characters.alpha import with_stated_opacity
 from mua.characters.fbx.bindings import get, items
 from mua.characters.fbx.textures import file_name, read_picture
 from mua.characters.messages import Messages
@@ -20,7 +21,7 @@ LOST = "Textures that are not in the file, beside it or in its folder textures/,
 OPACITY = ("pbr.opacity", "fbx.transparency_color", "fbx.transparency_factor")  # properties with a picture of it
 BASE = re.compile("diffuse|albedo|base_?colou?r|main_?tex", re.IGNORECASE)
 GREY = np.array([0.6, 0.6, 0.6, 1.0])  # linear colour of a material that states none
-DEFAULT = Material("default", pictures.flat(GREY))  # of faces without a material
+DEFAULT = Material("default", pictures.flat(GREY), alpha_mode="opaque")  # of faces without a material
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,7 +32,6 @@ class Look:
     uv_set: str = ""
     matrix: Array = field(default_factory=lambda: np.eye(2, 3))  # affine map of (u, v, 1), v up
     needed: bool = False  # there is a picture, which they place
-    clear: bool = False  # opacity is 0 all over
 
 
 class Looks:
@@ -51,12 +51,6 @@ class Looks:
             self._found[element] = len(self.read)
             self.read.append(Look(DEFAULT) if source is None else self._look(source))
         return self._found[element]
-
-    def settled(self) -> tuple[Material, ...]:
-        """The materials; where all are clear, opacity means nothing in this file, and all are drawn opaque."""
-        if self.read and all(look.clear or look.material is DEFAULT for look in self.read):
-            return tuple(_opaque(look.material) for look in self.read)
-        return tuple(look.material for look in self.read)
 
     def _look(self, source: Any) -> Look:
         name = str(get(source, "name"))
@@ -114,16 +108,11 @@ class Looks:
             return look
         found = (_texture(source, name) for name in OPACITY)
         texture, picture = self._picture(next((one for one in found if one is not None), None))
-        image = pictures.opaque(look.material.image)
         if texture is not None and picture is not None:
-            image = pictures.with_opacity(image, _opacity(picture))
+            image = pictures.with_opacity(look.material.image, _opacity(picture))
             placed = look if look.needed else _placed(look.material, texture)
             return replace(placed, material=replace(placed.material, image=image))
-        opacity = _stated_opacity(source)
-        if opacity >= 1:
-            return replace(look, material=_opaque(look.material))
-        image = pictures.tinted(image, np.array([1, 1, 1, opacity]))
-        return replace(look, material=replace(look.material, image=image), clear=opacity <= 0)
+        return replace(look, material=with_stated_opacity(look.material, _stated_opacity(source)))
 
 
 def _texture(source: Any, name: str) -> Any | None:
@@ -150,10 +139,6 @@ def _stated_opacity(source: Any) -> float:
     else:
         opacity = 1.0
     return min(max(opacity, 0.0), 1.0) if np.isfinite(opacity) else 1.0
-
-
-def _opaque(material: Material) -> Material:
-    return replace(material, image=pictures.opaque(material.image), alpha_mode="opaque")
 
 
 def _opacity(picture: Array) -> Array:

@@ -1,24 +1,20 @@
 """Characters and motion from .fbx files, by ufbx."""
 
-from collections.abc import Sequence
 from pathlib import Path
 
-from mua.atlas.surfaces import Surfaces
 from mua.characters.animation import Animation, whole_animation
-from mua.characters.assemble import assemble
-from mua.characters.facing import AS_SHOWN, Facing
 from mua.characters.fbx.process import scenes_of
+from mua.scene import Scene
 
 
-def read_fbx(path: Path, *, leave_out: Sequence[str] = (), facing: Facing = AS_SHOWN) -> Surfaces:
+def read_fbx(path: Path) -> Scene:
     """Read all skinned meshes of a file, with what hangs rigidly on their joints, and its animation stacks as clips.
 
-    Where nothing is skinned, meshes on animated nodes are taken, each rigid on its node. `leave_out` names meshes,
-    nodes or materials that are not part of the character.
-    Raises an InputError where the file is broken or holds no mesh on a skeleton.
+    Where nothing is skinned, meshes on animated nodes are taken, each rigid on its node.
+    Raises an InputError where the file is broken.
     """
     (scene,) = scenes_of(path, "skinned")
-    return assemble(scene, path, leave_out=leave_out, facing=facing)
+    return scene
 
 
 def read_fbx_animation(path: Path) -> Animation:

@@ -59,7 +59,7 @@ class Reader:
         scene = replace(
             self._scene(skins),
             parts=tuple(parts),
-            materials=self._looks.settled(),
+            materials=tuple(look.material for look in self._looks.read),
             notes=(*self._messages.notes(), *self._clip_notes),
         )
         return [scene, *(self._scene([skin]) for skin in self._bare_skins() if self._wanted == "animation")]

@@ -34,7 +34,6 @@ class Coordinates:
     texcoord: int = 0
     matrix: Array = field(default_factory=lambda: np.eye(2, 3))  # affine map of (u, v, 1)
     needed: bool = False  # there is a picture, which they place
-    opaque: bool = True
     vertex_colors: bool = True  # COLOR_0 is multiplied in
 
     def apply(self, uv: Array) -> Array:
@@ -50,7 +49,7 @@ def read_materials(document: Document, messages: Messages) -> tuple[tuple[Materi
     """All materials of a file, then one for primitives that name none; what is not drawn goes to `messages`."""
     materials = document.gltf.materials or []
     pairs = [_material(document, index, material, messages) for index, material in enumerate(materials)]
-    pairs.append((Material("default", pictures.flat(np.ones(4))), Coordinates()))
+    pairs.append((Material("default", pictures.flat(np.ones(4)), alpha_mode="opaque"), Coordinates()))
     variants = (document.gltf.extensions or {}).get(VARIANTS, {}).get("variants")
     for variant in variants if isinstance(variants, list) else []:
         name = variant.get("name") if isinstance(variant, dict) else variant
@@ -68,10 +67,12 @@ def _material(document: Document, index: int, material: Any, messages: Messages)
     name = material.name or f"material{index}"
     if UNLIT in (material.extensions or {}) and not is_toon(material):
         messages.add("Unlit materials are shaded like the others: {}.", name)
-    image, wraps, reads = pictures.flat(factor), REPEAT, Coordinates()
+    # A factor of 0 0 0 0 is one that nobody set; where alpha counts, its colour is never seen.
+    tint = np.append(factor[:3] if factor.any() or material.alphaMode in (None, "OPAQUE") else np.ones(3), 1)
+    image, wraps, reads = pictures.flat(tint), REPEAT, Coordinates()
     if texture is not None:
         image, wraps = _picture(document, texture, f"{where} base colour texture")
-        image, reads = pictures.tinted(image, factor), _coordinates(document, texture, where)
+        image, reads = pictures.tinted(image, tint), _coordinates(document, texture, where)
     glow, glow_wraps, glow_reads = _emission(document, material, where)
     if glow is not None:
         if texture is None:
@@ -80,11 +81,10 @@ def _material(document: Document, index: int, material: Any, messages: Messages)
             image = pictures.glowing(image, glow)
         else:
             messages.add("Emission with another UV mapping than the base colour is left out, in materials: {}.", name)
-    read = _with_opacity(Material(name, image, *wraps), material, document, where)
+    read = _with_alpha_mode(Material(name, image, *wraps, opacity=factor[3]), material, document, where)
     if read.alpha_mode != "mask":
         read = _with_transmission(read, reads, material, document, where, messages)
-    opaque = read.alpha_mode == "opaque"
-    return read, replace(reads, opaque=opaque, vertex_colors=not is_toon(material))
+    return read, replace(reads, vertex_colors=not is_toon(material))
 
 
 def _emission(document: Document, material: Any, where: str) -> tuple[Array | None, tuple[Wrap, Wrap], Coordinates]:
@@ -105,14 +105,13 @@ def _emission(document: Document, material: Any, where: str) -> tuple[Array | No
     return pictures.tinted(image, factor), wraps, _coordinates(document, info, where)
 
 
-def _with_opacity(read: Material, material: Any, document: Document, where: str) -> Material:
-    """The material with the alpha that its mode asks for."""
+def _with_alpha_mode(read: Material, material: Any, document: Document, where: str) -> Material:
+    """The material with what its file says of its alpha."""
     mode = ALPHA_MODES.get(material.alphaMode or "OPAQUE")
     if mode is None:
         raise document.error(f"{where}.alphaMode is {material.alphaMode!r}, expected one of {', '.join(ALPHA_MODES)}")
     cutoff = 0.5 if material.alphaCutoff is None else material.alphaCutoff
-    image = pictures.opaque(read.image) if mode == "opaque" else read.image
-    return replace(read, image=image, alpha_mode=mode, alpha_cutoff=float(cutoff))
+    return replace(read, alpha_mode=mode, alpha_cutoff=float(cutoff))
 
 
 def _with_transmission(
@@ -136,7 +135,10 @@ def _with_transmission(
                 "Transmission with another UV mapping than the base colour is left out, in materials: {}.", read.name
             )
             return read
-    return replace(read, image=pictures.transmitting(read.image, factor * share), alpha_mode="blend")
+    image = pictures.opaque(read.image) if read.alpha_mode == "opaque" else read.image
+    opacity = 1.0 if read.alpha_mode == "opaque" else read.opacity
+    image = pictures.transmitting(image, factor * share)
+    return replace(read, image=image, opacity=opacity, alpha_mode="blend")
 
 
 def _base_color(material: Any) -> tuple[Any, dict[str, Any] | None]:

@@ -131,8 +131,7 @@ def _colors(geometry: dict[str, Array], faces: Array, reads: Coordinates) -> Arr
     if colors.dtype.kind in "iu":  # stored without the flag that says so, which the format asks for
         colors = colors / np.iinfo(colors.dtype).max
     rgba = np.ones((len(colors), 4))
-    channels = 3 if reads.opaque else colors.shape[1]
-    rgba[:, :channels] = np.clip(colors[:, :channels], 0, 1)
+    rgba[:, : colors.shape[1]] = np.clip(colors, 0, 1)
     return None if (rgba == 1).all() else rgba[faces]
 
 

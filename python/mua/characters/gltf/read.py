@@ -1,17 +1,14 @@
 """Characters from .glb, .gltf and .vrm files."""
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
 import numpy as np
 
-from mua.atlas.surfaces import Surfaces
 from mua.characters.animation import Animation, whole_animation
-from mua.characters.assemble import assemble
-from mua.characters.facing import AS_SHOWN, Facing
 from mua.characters.gltf.animation import moved_nodes, read_animations
 from mua.characters.gltf.document import Document, load
 from mua.characters.gltf.materials import read_materials
@@ -27,16 +24,14 @@ INSTANCES = "EXT_mesh_gpu_instancing"
 UNWEIGHTED = "Primitives without skin weights, which no joint moves, are left out, of meshes: {}."
 
 
-def read_gltf(path: Path, *, leave_out: Sequence[str] = (), facing: Facing = AS_SHOWN) -> Surfaces:
+def read_gltf(path: Path) -> Scene:
     """Read all skinned meshes of a .glb, .gltf or .vrm, with what hangs rigidly on their joints, and its clips.
 
-    Where nothing is skinned, meshes on animated nodes are taken, each rigid on its node. `leave_out` names meshes,
-    nodes or materials that are not part of the character.
-    Raises an InputError that names the field where the file is broken, needs an extension that is not read, or
-    holds no mesh on a skeleton.
+    Where nothing is skinned, meshes on animated nodes are taken, each rigid on its node.
+    Raises an InputError that names the field where the file is broken or needs an extension that is not read.
     """
     document = load(path)
-    return assemble(_meshes(document, read_tree(document)), path, leave_out=leave_out, facing=facing)
+    return _meshes(document, read_tree(document))
 
 
 def read_gltf_animation(path: Path) -> Animation:

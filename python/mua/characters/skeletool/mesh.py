@@ -125,6 +125,6 @@ def _material(name: str, looks: dict[str, Path | None]) -> Material:
     if picture is None:
         return Material(name, pictures.flat(GREY))
     try:
-        return Material(name, pictures.opaque(pictures.decode_image(picture.read_bytes())), alpha_mode="opaque")
+        return Material(name, pictures.decode_image(picture.read_bytes()), alpha_mode="opaque")
     except (OSError, ValueError) as error:
         raise InputError(f"{picture}: the texture of material {name} cannot be read: {error}") from error

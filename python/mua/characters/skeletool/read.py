@@ -4,17 +4,14 @@ Its joints turn or slide along one axis each. The last joint of each bone that c
 character; those between are part of its turn and move, so that nothing is lost.
 """
 
-from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 
 from mua import rotation
 from mua.arrays import Array
-from mua.atlas.surfaces import Surfaces
 from mua.characters.animation import Animation
 from mua.characters.assemble import assemble
-from mua.characters.facing import AS_SHOWN, Facing
 from mua.characters.rigid_motion import local_offsets, local_rotations
 from mua.characters.skeletool.character import character_of, read_character_files
 from mua.characters.skeletool.mesh import Mesh, read_mesh
@@ -27,8 +24,8 @@ from mua.scene import Part, Scene, Skin, upwards
 RATE = 25.0  # frames per second of the family's cameras; no file says it
 
 
-def read_skeletool(path: Path, *, leave_out: Sequence[str] = (), facing: Facing = AS_SHOWN) -> Surfaces:
-    """Read a .character and the files that it names, in metres; `leave_out` names materials that are no part of it.
+def read_skeletool(path: Path) -> Scene:
+    """Read a .character and the files that it names, in metres.
 
     Raises an InputError that names file and line where one of them is not as it should be.
     """
@@ -36,7 +33,7 @@ def read_skeletool(path: Path, *, leave_out: Sequence[str] = (), facing: Facing 
     skeleton, mesh = read_skeleton(files.skeleton), read_mesh(files.mesh)
     skin = read_skin(files.skin, skeleton, len(mesh.positions))
     rest = skeleton.world(read_dofs(files.pose, skeleton.dofs)[1][:1])
-    return assemble(_scene(path.stem, skeleton, skin, mesh, rest), path, leave_out=leave_out, facing=facing)
+    return _scene(path.stem, skeleton, skin, mesh, rest)
 
 
 def read_skeletool_motion(path: Path, *, character: Path | None = None, rate: float = RATE) -> Animation:
@@ -45,7 +42,8 @@ def read_skeletool_motion(path: Path, *, character: Path | None = None, rate: fl
     The world is that of the file, in metres. Raises an InputError that names file and line.
     """
     character = character or character_of(path)
-    surfaces, skeleton = read_skeletool(character), read_skeleton(read_character_files(character).skeleton)
+    surfaces = assemble(read_skeletool(character), character)
+    skeleton = read_skeleton(read_character_files(character).skeleton)
     turned, placed = skeleton.world(read_dofs(path, skeleton.dofs)[1])
     rig = surfaces.skeleton
     joints = [j for j in (skeleton.joint_of(name) for name in rig.names) if j is not None]

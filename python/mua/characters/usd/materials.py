@@ -13,11 +13,13 @@ from pxr import Ar, Sdf, Usd, UsdGeom, UsdShade
 
 from mua.arrays import Array
 from mua.atlas import pictures
+from mua.characters.alpha import with_stated_opacity
 from mua.characters.messages import Messages
 from mua.errors import InputError
 from mua.scene import Material, Wrap
 
 WRAPS: dict[str, Wrap] = {"repeat": "repeat", "mirror": "mirror", "clamp": "clamp", "black": "clamp"}
+PRIMVARS = {"UsdPrimvarReader_float3": "displayColor", "UsdPrimvarReader_float": "displayOpacity"}
 CHANNELS = {"r": 0, "g": 1, "b": 2, "a": 3}
 
 
@@ -47,8 +49,7 @@ def read_look(mesh: UsdGeom.Mesh, prim: Usd.Prim, path: Path, messages: Messages
         textured = _textured(look.material.name, source[0], path)
         picture = textured.material.image
         if not look.needed:
-            image = look.material.image
-            look = replace(textured, material=replace(textured.material, image=image), color_primvar=look.color_primvar)
+            look = _at(look, textured)
         elif not _same_place(look, textured):
             sentence = "Emission with another UV mapping than the base colour is left out, in materials: {}."
             messages.add(sentence, look.material.name)
@@ -66,24 +67,36 @@ def _same_place(look: Look, other: Look) -> bool:
 
 def _surface_look(name: str, shader: UsdShade.Shader, path: Path) -> Look:
     """Diffuse colour and opacity of a UsdPreviewSurface."""
-    opacity, alpha_source = _value(shader, "opacity", default=1.0)
     color, source = _value(shader, "diffuseColor", default=(0.18, 0.18, 0.18))
-    if isinstance(color, str):
-        return Look(Material(name, pictures.flat(np.array([1, 1, 1, opacity]))), color_primvar=color)
-    if source is None:
-        look = Look(Material(name, pictures.flat(np.array([*color, opacity]))))
-    else:
+    if source is not None:
         look = _textured(name, source[0], path)
+    elif isinstance(color, str):
+        look = Look(Material(name, pictures.flat(np.ones(4))), color_primvar=color)
+    else:
+        look = Look(Material(name, pictures.flat(np.array([*color, 1]))))
     threshold = float(_value(shader, "opacityThreshold", default=0.0)[0])
     if threshold > 0:
         look = replace(look, material=replace(look.material, alpha_mode="mask", alpha_cutoff=threshold))
-    if alpha_source is not None:
-        alpha = _channel(*alpha_source, path)
-        return replace(look, material=replace(look.material, image=pictures.with_opacity(look.material.image, alpha)))
-    if source is None:
-        return look
-    image = pictures.tinted(pictures.opaque(look.material.image), np.array([1, 1, 1, float(opacity)]))
-    return replace(look, material=replace(look.material, image=image))
+    return _with_opacity(look, shader, path)
+
+
+def _with_opacity(look: Look, shader: UsdShade.Shader, path: Path) -> Look:
+    """The look with its opacity: of a channel of a texture, of the mesh, or a number."""
+    opacity, source = _value(shader, "opacity", default=1.0)
+    if source is not None:
+        image = pictures.with_opacity(look.material.image, _channel(*source, path))
+        placed = look if look.needed else _at(look, _textured(look.material.name, source[0], path))
+        return replace(placed, material=replace(placed.material, image=image))
+    if isinstance(opacity, str):
+        image = pictures.opaque(look.material.image)
+        return replace(look, material=replace(look.material, image=image), opacity_primvar=opacity)
+    return replace(look, material=with_stated_opacity(look.material, float(opacity)))
+
+
+def _at(look: Look, other: Look) -> Look:
+    """The look at the place of the surface where another lies."""
+    material = replace(look.material, wrap_u=other.material.wrap_u, wrap_v=other.material.wrap_v)
+    return replace(look, material=material, primvar=other.primvar, matrix=other.matrix, needed=True)
 
 
 def _display_look(mesh: UsdGeom.Mesh, prim: Usd.Prim) -> Look:
@@ -109,8 +122,8 @@ def _value(shader: UsdShade.Shader, name: str, *, default: Any) -> tuple[Any, tu
         producer = UsdShade.Shader(attribute.GetPrim())
         if producer and producer.GetIdAttr().Get() == "UsdUVTexture":
             return default, (producer, attribute.GetBaseName())
-        if producer and producer.GetIdAttr().Get() == "UsdPrimvarReader_float3":
-            return str(_constant(producer, "varname", "displayColor")), None
+        if producer and producer.GetIdAttr().Get() in PRIMVARS:
+            return str(_constant(producer, "varname", PRIMVARS[producer.GetIdAttr().Get()])), None
         constant = attribute.Get(Usd.TimeCode.EarliestTime())
         if constant is not None:
             return constant, None

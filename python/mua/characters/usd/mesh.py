@@ -13,7 +13,6 @@ from mua.errors import InputError
 from mua.scene import Part
 
 NO_TIME = Usd.TimeCode.EarliestTime()
-WIDTHS = {"displayOpacity": 1}  # components of a primvar that is read as colour; others have 3
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,10 +124,10 @@ def _colors(mesh: UsdGeom.Mesh, look: Look, topology: _Topology, where: str) -> 
     """Linear colours and opacity [F, 3, 4] of the triangles' corners; None where there are none but white."""
     rgba = np.ones((len(topology.triangles), 3, 4))
     primvars = UsdGeom.PrimvarsAPI(mesh)
-    for name, channels in ((look.color_primvar, slice(0, 3)), (look.opacity_primvar, slice(3, 4))):
+    for name, first, width in ((look.color_primvar, 0, 3), (look.opacity_primvar, 3, 1)):
         primvar = primvars.FindPrimvarWithInheritance(name) if name else None
         if primvar and primvar.HasValue():
-            rgba[..., channels] = topology.corner_values(primvar, WIDTHS.get(name or "", 3), where)
+            rgba[..., first : first + width] = topology.corner_values(primvar, width, where)
     rgba = np.clip(rgba, 0, 1)
     return None if (rgba == 1).all() else rgba
 

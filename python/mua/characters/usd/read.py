@@ -9,10 +9,8 @@ import numpy as np
 from pxr import Tf, Usd, UsdGeom, UsdSkel
 
 from mua.arrays import Array
-from mua.atlas.surfaces import Surfaces
 from mua.characters.animation import Animation, bare_animation
 from mua.characters.assemble import assemble
-from mua.characters.facing import AS_SHOWN, Facing
 from mua.characters.messages import UNHELD, Messages
 from mua.characters.usd.materials import read_look
 from mua.characters.usd.mesh import read_part, subsets
@@ -26,14 +24,13 @@ RATE = 30.0  # frames per second that clips of a file are sampled at
 _Nodes: TypeAlias = Bones | Movers
 
 
-def read_usd(path: Path, *, leave_out: Sequence[str] = (), facing: Facing = AS_SHOWN) -> Surfaces:
+def read_usd(path: Path) -> Scene:
     """Read all skinned meshes of a stage, in metres and Y up, and the animation bound to their skeletons.
 
-    Where nothing is skinned, meshes on prims that move are taken, each rigid on its prim. `leave_out` names meshes or
-    materials that are not part of the character.
-    Raises an InputError that names the prim and attribute where the stage is broken or holds no such mesh.
+    Where nothing is skinned, meshes on prims that move are taken, each rigid on its prim.
+    Raises an InputError that names the prim and attribute where the stage is broken.
     """
-    return assemble(_meshes(_opened(path), path), path, leave_out=leave_out, facing=facing)
+    return _meshes(_opened(path), path)
 
 
 def read_usd_animation(path: Path) -> Animation:

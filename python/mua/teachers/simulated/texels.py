@@ -12,6 +12,7 @@ from mua.teacher import Light
 from mua.teachers.simulated.hidden import showing_instead
 from mua.texture.albedo import FINER, finer_picture, sample_albedo
 from mua.texture.deconvolution import deconvolved
+from mua.texture.depths import depths
 from mua.texture.sh import LINEAR
 from mua.texture.sharpness import Sharpness, sharpness
 from mua.texture.sheet import surfel_opacities
@@ -21,7 +22,6 @@ from mua.texture.surfels import rest_surfels
 MOST_OPAQUE = 5.0  # logit of a texel whose alpha is 1
 MOST_CLEAR = 6.0  # negative logit of one whose alpha is 0: below what changes an 8-bit image, so that it is not drawn
 SOLID = 0.9  # opacity from which a texel hides what is behind it
-SINK = 0.45  # of its smaller standard deviation, by which a splat lies below the surface: on edge, many tails add up
 SHEEN_TINT = 0.5  # how far the sheen has the colour of the surface, as cloth does, rather than that of the lamp
 
 
@@ -48,7 +48,9 @@ class SurfaceTexels:
             wanted=wanted.at(texels.texels),
         )
         relief += surfels.aside
-        relief -= SINK * np.exp(surfels.log_scales[:, :2]).min(axis=1, keepdims=True) * surfels.normals
+        deviations = np.exp(surfels.log_scales[:, :2]).min(axis=1)
+        below = depths(self._dense @ mesh.vertices, normals=surfels.normals, deviations=deviations)
+        relief -= below[:, None] * surfels.normals
         uv = np.einsum("nk,nkc->nc", barycentrics, mesh.uv[mesh.uv_faces[triangles]])
         albedo = sample_albedo(character.base_color, uv, texels.size)
         at_home = _at_home(uv, texels) & ~surfels.at_border  # beyond it lies the image of another chart
