@@ -27,7 +27,7 @@ def counts(fragments: int = 4_000) -> Counts:
     """1 MB and 1 MFLOP to decode, 0.5 MB and 3 MFLOP to pose; 1,000 splats."""
     decode = tuple(Part({"BlendLl": Work(1_000 * kilo, 1_000 * kilo)}, 11) for kilo in (400, 600))
     pose = Part({**dict.fromkeys(POSING, Work(0, 0)), "SplatProject": Work(500_000, 3_000_000)}, 8)
-    return Counts("a", 1_000, decode, pose, 7, (Drawn(1.0, 2_000, fragments, 10.0),))
+    return Counts("a", 50_000, 20_000, 1_000, decode, pose, 7, (Drawn(1.0, 2_000, fragments, 10.0),))
 
 
 def only(modelled: list[Modelled], avatars: int, eyes: int) -> Modelled:

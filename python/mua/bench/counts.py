@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from mua.arrays import Array
+from mua.asset.count import parameters
 from mua.avatar.camera import Camera, orbit
 from mua.avatar.coarser import coarsest, texel_length
 from mua.avatar.level_choice import LARGEST_TEXEL
@@ -70,6 +71,8 @@ class Counts:
     """Counts for one avatar before one eye, with all its splats in view."""
 
     avatar: str
+    file_bytes: int
+    parameters: int
     splats: int
     decode: tuple[Part, ...]  # from a window of poses to mesh and channels, one displayed frame each
     pose: Part  # from these to sorted splats, in every displayed frame that poses
@@ -111,6 +114,8 @@ def count(device: Device, path: Path) -> Counts:
     posed = views[0][0]
     return Counts(
         avatar=avatar.name,
+        file_bytes=path.stat().st_size,
+        parameters=sum(parameters(avatar).values()),
         splats=len(avatar.rig.texels.texels),
         decode=tuple(_part(bound, share) for bound in _decode_parts(device, frame.avatars[0], clip)),
         pose=_part(posed, share),
@@ -125,6 +130,8 @@ def as_json(counts: Counts) -> dict[str, Any]:
     works = {"decode": counts.whole.work, "pose": counts.pose.work, "peak_frame": counts.peak}
     return {
         "avatar": counts.avatar,
+        "file_bytes": counts.file_bytes,
+        "parameters": counts.parameters,
         "splats": counts.splats,
         "screen_pixels": list(SCREEN),
         "focal_pixels": FOCAL,

@@ -1,0 +1,42 @@
+"""What an avatar of each preset costs, beside what it cost when somebody last looked.
+
+Where a change means to move these figures, write them anew and say in its message why:
+
+    mua-bench --preset tiny --counts --json tests/bench/counts/tiny.json
+"""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from mua.asset.write import write
+from mua.bench.counts import as_json, count
+from mua.bench.random_avatar import random_avatar
+from mua.gpu import Device
+from mua.student.settings import preset
+
+KEPT = Path(__file__).with_name("counts")
+ROUNDED = 0.01  # of a count that depends on which splats a device finds in view
+
+
+@pytest.mark.parametrize("name", ["tiny", "preview", pytest.param("paper", marks=pytest.mark.long)])
+def test_an_avatar_costs_what_it_did(device: Device, name: str, tmp_path: Path) -> None:
+    kept = json.loads((KEPT / f"{name}.json").read_text())
+    path = tmp_path / "random.muaavatar"
+    write(path, random_avatar(preset(name)))
+    found = json.loads(json.dumps(as_json(count(device, path))))
+    assert found.keys() == kept.keys()
+    for field in ("file_bytes", "parameters", "splats", "parts", "dispatches"):
+        assert found[field] == kept[field]
+    for field in ("bytes", "operations"):
+        assert found[field]["decode"] == kept[field]["decode"]
+        assert found[field] == pytest.approx(kept[field], rel=ROUNDED)
+    for field in ("triangles", "fragments"):
+        assert found[field] == pytest.approx(kept[field], rel=ROUNDED)
+    assert found["kernels"].keys() == kept["kernels"].keys()
+    for kernel, work in kept["kernels"].items():
+        assert found["kernels"][kernel] == pytest.approx(work, rel=ROUNDED)
+    for level, was in zip(found["levels"], kept["levels"], strict=True):
+        assert level["bytes"] == pytest.approx(was["bytes"], rel=ROUNDED)
+        assert (level["texels"], level["splats"]) == (was["texels"], was["splats"])
