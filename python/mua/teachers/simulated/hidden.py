@@ -19,11 +19,10 @@ from mua.teachers.simulated.surface import SkinnedSurface
 from mua.training.warp_start import start
 
 DEVICE = "cpu"
-DIRECTIONS = 48  # in which a point looks out
-POSES = 3  # in which joints are turned at random, beside the bind pose
-TURN = np.radians(45)  # of a joint, at most
+DIRECTIONS = 48  # in which a point looks out, others in each pose
+POSES = 8  # in which joints are turned at random, beside the bind pose
+TURN = np.radians(120)  # of a joint, at most
 LIFT = 5e-4  # metres on a person, from which a ray starts: what lies closer is the surface itself
-GOLDEN = np.pi * (3 - np.sqrt(5))  # radians
 
 start()
 
@@ -57,10 +56,13 @@ def showing_instead(
     faces = character.mesh.faces[~clear]
     lift = LIFT * float(np.ptp(character.mesh.vertices, axis=0).max())
     hidden = np.arange(len(corners))
-    for turned in _poses(character):
+    rng = np.random.default_rng(0)
+    for turned in _poses(character, rng):
         places = surface.posed(skeleton.skinning(turned, skeleton.bind_translations)).places
         points = np.einsum("nk,nkc->nc", barycentrics[hidden], places[corners[hidden]])
-        hidden = hidden[~_seen(points, places, faces, lift)]
+        away = rng.standard_normal((DIRECTIONS, 3))
+        away /= np.linalg.norm(away, axis=1, keepdims=True)
+        hidden = hidden[~_seen(points, places, faces, away=away, lift=lift)]
     shown, own = np.arange(len(corners)), np.ones(len(corners), bool)
     own[hidden] = False
     if len(hidden) and (own & solid).any():
@@ -69,9 +71,9 @@ def showing_instead(
     return shown
 
 
-def _poses(character: Character) -> list[Array]:
+def _poses(character: Character, rng: np.random.Generator) -> list[Array]:
     """Local rotations [J, 4] of the bind pose and of random ones."""
-    rng, bind = np.random.default_rng(0), character.skeleton.bind_rotations
+    bind = character.skeleton.bind_rotations
     moving = moving_joints(character)[:, None]
     axes = rng.standard_normal((POSES, len(bind), 3))
     axes /= np.linalg.norm(axes, axis=-1, keepdims=True)
@@ -79,7 +81,7 @@ def _poses(character: Character) -> list[Array]:
     return [bind, *rotation.multiply(np.broadcast_to(bind, turns.shape), turns)]
 
 
-def _seen(points: Array, vertices: Array, faces: Array, lift: float) -> Array:
+def _seen(points: Array, vertices: Array, faces: Array, *, away: Array, lift: float) -> Array:
     """Which points [n] a triangle does not enclose from all sides."""
     seen = wp.zeros(len(points), dtype=bool, device=DEVICE)
     if len(points) and len(faces):
@@ -87,14 +89,6 @@ def _seen(points: Array, vertices: Array, faces: Array, lift: float) -> Array:
             points=wp.array(vertices, dtype=wp.vec3, device=DEVICE),
             indices=wp.array(faces.ravel(), dtype=int, device=DEVICE),
         )
-        inputs = [wp.array(values, dtype=wp.vec3, device=DEVICE) for values in (points, _directions())]
+        inputs = [wp.array(values, dtype=wp.vec3, device=DEVICE) for values in (points, away)]
         wp.launch(look_out, dim=len(points), inputs=[mesh.id, *inputs, lift], outputs=[seen], device=DEVICE)
     return np.asarray(seen.numpy() | (len(faces) == 0))
-
-
-def _directions() -> Array:
-    """Unit vectors [DIRECTIONS, 3] all around."""
-    number = np.arange(DIRECTIONS)
-    up = 1 - (2 * number + 1) / DIRECTIONS
-    flat, azimuth = np.sqrt(1 - up * up), GOLDEN * number
-    return np.stack([flat * np.sin(azimuth), up, flat * np.cos(azimuth)], axis=1)
