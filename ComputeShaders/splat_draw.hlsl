@@ -10,7 +10,8 @@
 // it gives to the next: tens of splats lie over one another. A pixel's own variance, 1/12 along any line, is added in full.
 // The root is the symmetric one: it changes little where the covariance does, also of round ellipses, whose axes are any.
 //
-// Six vertices a splat, two triangles, in the order of the sort: back to front. Blend One, OneMinusSrcAlpha.
+// A splat is one triangle around its quad, outside which alpha is 0, or the quad's two halves, for the same picture: a small
+// one costs less by the triangle than by the pixel. Drawn in the order of the sort, back to front. Blend One, OneMinusSrcAlpha.
 // Buffers are arguments, so that each includer declares only what it binds. Reference: python/mua/kernels/splat_draw.py.
 
 #ifndef MUA_SPLAT_DRAW_HLSL
@@ -43,7 +44,7 @@ static const float SMALLEST_DISTANCE = 1e-30; // metres; keeps the direction fin
 struct SplatVaryings
 {
     float4 position : SV_Position;
-    SHADE2 offset : TEXCOORD0; // (u, v), -1 to 1 at the quad's edges
+    SHADE2 offset : TEXCOORD0; // (u, v), -1 and 1 at the quad's edges
     nointerpolation SHADE4 color : TEXCOORD1; // sRGB, not premultiplied; the peak
 };
 
@@ -98,21 +99,23 @@ float2 splatExtent(float2 axis, float2 wide)
     return REACH * (wide.y + (wide.x - wide.y) * (size.x + size.y) * size);
 }
 
-// Corner of a quad for one of its six vertices, each coordinate -1 or 1.
-float2 splatCorner(uint corner)
+// A splat's corner, its quad having sides at -1 and 1: of the triangle around the quad, or of the quad's two halves.
+float2 splatCorner(uint corner, uint corners)
 {
     bool right = corner == 1 || corner == 2 || corner == 4;
     bool below = corner == 2 || corner == 4 || corner == 5;
+    if (corners == 3)
+        return float2(corner == 1 ? 3 : -1, corner == 2 ? 3 : -1);
     return float2(right ? 1 : -1, below ? 1 : -1);
 }
 
-// One vertex of a splat's quad for one eye, outside the clip volume where that eye does not see the splat. Rows of
+// One of a splat's 3 or 6 vertices for one eye, outside the clip volume where that eye does not see the splat. Rows of
 // pixels run down from clip y = 1. The depth is that of the splat's centre, so that what else is drawn can hide it.
 // splats = [2 N] as pack_splats of python/mua/kernels/splat_project.py lays them out.
-SplatVaryings splatVertex(uint vertex, uint eye, float2 screen, float4x4 viewProjection, StructuredBuffer<uint> order,
-                          StructuredBuffer<uint4> splats)
+SplatVaryings splatVertex(uint vertex, uint corners, uint eye, float2 screen, float4x4 viewProjection,
+                          StructuredBuffer<uint> order, StructuredBuffer<uint4> splats)
 {
-    uint splat = 2 * order[vertex / 6];
+    uint splat = 2 * order[vertex / corners];
     uint4 head = splats[splat];
     uint4 tail = splats[splat + 1];
     float4 color = unpackColor(uint2(head.w, tail.x), eye);
@@ -123,7 +126,7 @@ SplatVaryings splatVertex(uint vertex, uint eye, float2 screen, float4x4 viewPro
     float3 centre = seen ? asfloat(head.xyz) : 0; // chosen as integers, so that head.w stays one: README.md
 
     float2 wide = splatWide(deviations);
-    float2 corner = splatCorner(vertex % 6);
+    float2 corner = splatCorner(vertex % corners, corners);
     float2 pixels = splatOffset(axis, wide, corner);
     float4 clip = mul(viewProjection, float4(centre, 1));
     float2 place = clip.xy / clip.w + pixels * float2(2, -2) / screen;
@@ -141,7 +144,7 @@ SplatVaryings splatVertex(uint vertex, uint eye, float2 screen, float4x4 viewPro
 // Premultiplied sRGB and alpha of a splat at a pixel.
 SHADE4 splatFragment(SplatVaryings varyings)
 {
-    SHADE2 window = saturate(1 - varyings.offset * varyings.offset); // several samples a pixel may lie outside the quad
+    SHADE2 window = saturate(1 - varyings.offset * varyings.offset); // 0 outside the quad
     SHADE alpha = varyings.color.a * window.x * window.y;
     return SHADE4(varyings.color.rgb * alpha, alpha);
 }

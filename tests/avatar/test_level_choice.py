@@ -8,7 +8,15 @@ import numpy as np
 import pytest
 
 from mua.avatar.camera import EYE_DISTANCE, Camera, perspective, stereo
-from mua.avatar.level_choice import HYSTERESIS, LARGEST_TEXEL, Seen, choose_level, choose_levels, texel_pixels
+from mua.avatar.level_choice import (
+    HYSTERESIS,
+    LARGEST_TEXEL,
+    Seen,
+    choose_level,
+    choose_levels,
+    splat_corners,
+    texel_pixels,
+)
 
 CASES = json.loads((Path(__file__).parents[1] / "golden" / "level_choice.json").read_text())
 COUNTS = (300_000, 76_000, 20_000)
@@ -53,6 +61,18 @@ def test_a_texel_looks_as_large_as_the_camera_shows_it() -> None:
 def test_two_eyes_see_from_their_middle(apart: float) -> None:
     """Also a giant's, each of which lies beside the box."""
     assert texel_pixels(0.01, BOX, stereo(camera(3), apart)) == pytest.approx(texel_pixels(0.01, BOX, [camera(3)]))
+
+
+def test_a_crowd_far_away_is_drawn_by_triangles_and_from_near_by_quads() -> None:
+    """As many pixels for each splat in twice the avatars, in twice the pixels from half as far."""
+    found = [splat_corners([BOX], 10_000, [camera(z)]) for z in (1.0, 2.0, 4.0, 8.0)]
+    assert found == sorted(found, reverse=True)
+    assert (found[0], found[-1]) == (6, 3)
+    for z in np.linspace(1, 8, 15):
+        one, eyes = splat_corners([BOX], 10_000, [camera(z)]), stereo(camera(z), EYE_DISTANCE)
+        assert splat_corners([BOX, BOX], 20_000, [camera(z)]) == one
+        assert splat_corners([BOX], 40_000, [camera(z / 2)]) == one
+        assert splat_corners([BOX], 10_000, eyes) == one
 
 
 def test_inside_the_box_a_texel_is_as_large_as_at_the_near_plane() -> None:

@@ -65,19 +65,18 @@ def test_avatars_and_eyes_add_up() -> None:
 
 
 def test_blocks_of_pixels_are_those_that_squares_touch() -> None:
-    """Both triangles of random squares, laid on the grid and sampled at pixel centres."""
+    """Both halves of random squares or the triangle around them, laid on the grid and sampled at pixel centres."""
     rng, side, count = np.random.default_rng(0), 6.0, 400
     y, x = (grid[..., None] for grid in np.mgrid[:24, :24] + 0.5)
     angle, middle = rng.uniform(0, 2 * np.pi, count), rng.uniform(11, 13, (2, count))
     along = np.cos(angle) * (x - middle[0]) + np.sin(angle) * (y - middle[1])
     across = np.cos(angle) * (y - middle[1]) - np.sin(angle) * (x - middle[0])
     within = np.maximum(np.abs(along), np.abs(across)) <= side / 2
-    touched = [
-        4 * half.reshape(12, 2, 12, 2, count).any(axis=(1, 3)).sum()
-        for half in (within & (along > across), within & (along <= across))
-    ]
-    found = shaded(Drawn(1.0, 2 * count, int(within.sum()), 1.0))
-    assert found == pytest.approx(sum(touched), rel=0.05)
+    around = (np.minimum(along, across) >= -side / 2) & (along + across <= side)
+    for shapes in ([within & (along > across), within & (along <= across)], [around]):
+        touched = sum(4 * shape.reshape(12, 2, 12, 2, count).any(axis=(1, 3)).sum() for shape in shapes)
+        found = shaded(Drawn(1.0, len(shapes) * count, sum(int(shape.sum()) for shape in shapes), 1.0))
+        assert found == pytest.approx(touched, rel=0.05)
     assert BLOCK_EDGE > BLOCK_CORNER
 
 

@@ -138,7 +138,7 @@ def splat_sort_cases() -> list[Case]:
     visible = np.flatnonzero(keys != HIDDEN)
     low = visible[np.argsort(keys[visible] & 0xFF, kind="stable")]
     elements = (keys[low].astype(np.uint32) >> 8 << 24) | low.astype(np.uint32)
-    arguments = np.array([6 * len(visible), 2, 0, 0, len(visible)], np.uint32)
+    arguments = np.array([3 * len(visible), 2, 0, 0, len(visible)], np.uint32)
     beyond = np.append(keys, np.uint16(0))  # the other half of the last word, no key of the sort
     first = _sort_pass(0, count, pack_keys(beyond), (visible, keys[visible] & 0xFF), elements, arguments)
     order = splat_sort(keys).astype(np.uint32)
@@ -180,7 +180,7 @@ def _sort_pass(
             ),
         ),
         Case(
-            *(name, "ScatterDigits", groups_of, {**constants, "instances": 2}),
+            *(name, "ScatterDigits", groups_of, {**constants, "instances": 2, "corners": 3}),
             {
                 **{"keys": keys, "arguments": given, "digit_counts": before, "digit_totals": totals},
                 "sorted": np.full(count, UNWRITTEN),

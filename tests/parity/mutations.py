@@ -353,7 +353,7 @@ FAULTS = {
             "digit_counts[row + group + 1]",
         ),
         Fault("last split of a digit lost", "live = splitWords(thread, mine, DIGIT_BIT + SPLIT_BITS);", ""),
-        Fault("vertices of a draw not counted", "VERTICES_PER_SPLAT * total", "total"),
+        Fault("vertices of a draw not counted", "corners * total", "total"),
         Fault(
             "arguments written by the second pass",
             "second_pass == 0 && group.x == 0",

@@ -11,6 +11,7 @@ BLOCK = 2048  # keys that one group takes
 DIGITS = 1 << DIGIT_BITS
 SCANNED = 16  # digits of a group of ScanDigits
 INSTANCES = 3
+CORNERS = 3
 UNWRITTEN = 0xFFFFFFFF
 
 
@@ -40,6 +41,6 @@ def sort_keys(
         commands.dispatch(scan, (DIGITS // SCANNED, 1, 1), {"digit_totals": totals, **table}, **constants)
         scatter = device.kernel("splat_sort.compute", "ScatterDigits")
         moved = {"keys": source, "digit_totals": totals, **table, "sorted": target}
-        commands.dispatch(scatter, (groups, 1, 1), moved, **constants, instances=INSTANCES)
+        commands.dispatch(scatter, (groups, 1, 1), moved, **constants, instances=INSTANCES, corners=CORNERS)
     commands.submit()
     return order.read(), arguments.read()

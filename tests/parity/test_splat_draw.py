@@ -170,6 +170,7 @@ def on_device(
     *,
     screen: tuple[int, int],
     depth: Array | float = 2.0,  # [N] metres
+    corners: int = 6,
 ) -> SortedSplats:
     """Splats as the shaders would leave them for eyes at one place that look along -Z."""
     packed = ellipses if ellipses.ndim == 3 else ellipses[None]
@@ -179,11 +180,12 @@ def on_device(
     focal, skew = np.diagonal(camera.projection)[:2], camera.projection[:2, 2]
     away = np.broadcast_to(depth, len(ellipses))[:, None]
     centres = np.concatenate([(ndc + skew) / focal * away, -away], axis=1)
-    arguments = np.array([6 * len(order), 1, 0, 0, len(order)], np.uint32)
+    arguments = np.array([corners * len(order), 1, 0, 0, len(order)], np.uint32)
     return SortedSplats(
         splats=device.buffer(pack_splats(centres, both, opacities, packed), name="splats"),
         order=device.buffer(order.astype(np.uint32), name="order"),
         arguments=device.buffer(arguments, name="arguments", indirect=True),
+        corners=corners,
     )
 
 
@@ -217,16 +219,17 @@ def integration_bound(exact: Array, opacity: float, major: float, minor: float) 
     return np.asarray(1.5 * alpha + half.eps * exact + half.tiny)
 
 
+@pytest.mark.parametrize("corners", [3, 6])
 @pytest.mark.parametrize("screen", SCREENS)
 @pytest.mark.parametrize("deviations", [(0.01, 0.01), (0.6, 0.05), (2.5, 0.3), (9.0, 4.0), (120.0, 90.0), (300.0, 0.5)])
 def test_shader_integrates_a_splat_as_the_reference(
-    device: Device, screen: tuple[int, int], deviations: tuple[float, float]
+    device: Device, screen: tuple[int, int], deviations: tuple[float, float], corners: int
 ) -> None:
     rng = np.random.default_rng(screen[0])
     angle, middle = rng.uniform(-np.pi, np.pi), rng.uniform(0.2, 0.8, 2) * screen
     ellipses = in_halves(np.array([[*middle, np.cos(angle), np.sin(angle), *deviations]]))
     colors, opacities = HELD_COLOR, HELD_OPACITY
-    splats = on_device(device, ellipses, colors, opacities, np.zeros(1), screen=screen)
+    splats = on_device(device, ellipses, colors, opacities, np.zeros(1), screen=screen, corners=corners)
     found = draw_image(device, SplatRenderer(device, IMAGE_FORMAT), splats, facing(screen))
     exact = splat_draw(ellipses, colors, opacities, np.zeros(1, int), screen=screen)
     row, column = np.mgrid[: screen[1], : screen[0]] + 0.5 - middle[::-1, None, None]

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from sorted_keys import INSTANCES, UNWRITTEN, sort_keys
+from sorted_keys import CORNERS, INSTANCES, UNWRITTEN, sort_keys
 
 from mua.arrays import Array
 from mua.gpu import Device, sources
@@ -60,7 +60,7 @@ def assert_sorts(device: Device, keys: Array) -> None:
     np.testing.assert_array_equal(order[:visible], np.argsort(keys, kind="stable")[:visible])
     assert np.all(order[visible:] == UNWRITTEN)
     if len(keys):
-        np.testing.assert_array_equal(arguments, [6 * visible, INSTANCES, 0, 0, visible])
+        np.testing.assert_array_equal(arguments, [CORNERS * visible, INSTANCES, 0, 0, visible])
 
 
 @pytest.mark.parametrize("count", [1, 2, 257, *BLOCK_COUNTS])

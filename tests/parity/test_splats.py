@@ -124,6 +124,27 @@ def test_the_picture_agrees_with_the_cpu_rasteriser(crowd: Crowd) -> None:
         assert psnr(found, render_premultiplied(crowd.exact, camera)) > LEAST_PSNR
 
 
+@pytest.mark.parametrize("size", [16, 256])
+def test_small_splats_are_triangles_large_ones_quads_and_both_make_the_same_picture(crowd: Crowd, size: int) -> None:
+    device, corners = crowd.device, 3 if size == 16 else 6
+    cameras = tuple(replace(camera, screen=(size, size)) for camera in crowd.cameras)
+    commands = device.commands()
+    crowd.frame.sort(commands, cameras)
+    commands.submit()
+    found, words = crowd.frame.sorted, crowd.frame.arguments.read()
+    assert found.corners == corners
+    assert words[0] == corners * words[VISIBLE_WORD] > 0
+    renderer, other = SplatRenderer(device, image_format(device)), 9 - corners
+    words[0] = other * words[VISIBLE_WORD]
+    arguments = device.buffer(words, name="arguments", indirect=True)
+    pictures = [
+        draw_image(device, renderer, splats, cameras)
+        for splats in (found, replace(found, arguments=arguments, corners=other))
+    ]
+    assert pictures[0].any()
+    np.testing.assert_allclose(*pictures, rtol=0, atol=1e-3)
+
+
 def test_an_avatar_without_texels_stands_among_others(device: Device, tmp_path: Path) -> None:
     avatars = three()
     crowd = Crowd(device, tmp_path, [avatars[0], with_texels(avatars[1], slice(0, 0)), avatars[2]], eyes=1)

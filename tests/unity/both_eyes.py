@@ -23,7 +23,7 @@ from mua.gpu.reflect import Constant, reflect
 
 FLOATS = tuple(f"half{count} float{count}" for count in ("", 2, 3, 4))  # slangc's halves have 16 bits
 STAND_IN_WORDS = ("UNITY_COLORSPACE_GAMMA", "VIEW SV_ViewID", *FLOATS)
-SPLAT_WORDS, VERTICES = 8, 6  # per splat
+SPLAT_WORDS = 8
 LEADING = 1000  # splats, more than the device takes at a time
 THIN = 0x2E662E66  # two halves of 0.1 pixels
 BLOCK = re.compile(r"layout\(set = (\d+), binding = (\d+), std\d+\)[ \w]*\b(uniform|buffer) (\w+) \{")
@@ -37,8 +37,8 @@ def values(drawn: Drawn) -> dict[str, Any]:
     """What the package and the engine set for the vertices."""
     matrices = Constant("view_projection", 0, "float", (2, 4, 4), (64, 4, 16), used=True)
     screen = Constant("screen", 0, "float", (4,), (4,), used=True)
-    eyes = Constant("eye_count", 0, "uint", (), (), used=True)
-    set_by_package = {c.name: value("draw", c, *drawn.constants[c.name]) for c in (matrices, screen, eyes)}
+    counts = (Constant(name, 0, "uint", (), (), used=True) for name in ("eye_count", "corners"))
+    set_by_package = {c.name: value("draw", c, *drawn.constants[c.name]) for c in (matrices, screen, *counts)}
     return {**set_by_package, "unity_StereoMatrixP": rows(turned=False)["unity_StereoMatrixP"]}
 
 
@@ -117,9 +117,11 @@ def led(drawn: Drawn) -> Drawn:
     changed = {"splats": np.append(splats, clear), "order": order}
     if "visible_arguments" in drawn.buffers:
         changed["visible_arguments"] = drawn.buffers["visible_arguments"].copy()
-        changed["visible_arguments"][0] += VERTICES * LEADING
+        changed["visible_arguments"][0] += drawn.corners * LEADING
     vertices, instances = drawn.arguments
-    return replace(drawn, buffers={**drawn.buffers, **changed}, arguments=(vertices + VERTICES * LEADING, instances))
+    return replace(
+        drawn, buffers={**drawn.buffers, **changed}, arguments=(vertices + drawn.corners * LEADING, instances)
+    )
 
 
 def picture(device: LayeredDevice, compiled: Compiled, drawn: Drawn, stereo: str, screen: tuple[int, int]) -> Array:

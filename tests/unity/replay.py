@@ -39,6 +39,11 @@ class Drawn:
     constants: dict[str, tuple[str, str]]  # by name, kind and content
     indices: Array | None = None  # corners of triangles, where the draw is indexed
 
+    @property
+    def corners(self) -> int:
+        """Vertices of a splat."""
+        return int(np.frombuffer(base64.b64decode(self.constants["corners"][1]), KINDS["Int"])[0])
+
 
 @dataclass
 class Replayed:

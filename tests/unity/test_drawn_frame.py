@@ -125,7 +125,7 @@ class Painter(UnityPainter):
         kept, order = (self.device.buffer(held[name], name=name) for name in ("splats", "order"))
         words = np.array([scene.drawn["indirect"].arguments[0], 1, 0, 0], np.uint32)
         arguments = self.device.buffer(words, name="arguments", indirect=True)
-        sorted_splats = SortedSplats(kept, order, arguments)
+        sorted_splats = SortedSplats(kept, order, arguments, scene.drawn["indirect"].corners)
         renderer = SplatRenderer(self.device, self.format, depth_format=DEPTH_FORMAT)
         target = Target(self.device, self.format, (len(scene.cameras) * SCREEN[0], SCREEN[1]), 1.0, self.folder)
         half = None if plane is None else (plane[1], (plane[0] * SCREEN[0], 0, SCREEN[0] // 2, SCREEN[1]))
@@ -167,7 +167,7 @@ def test_counts_of_draws(mono: Scene, instanced: Scene) -> None:
         indirect, direct = scene.drawn["indirect"], scene.drawn["direct"]
         assert (indirect.indirect, direct.indirect) == (True, False)
         assert indirect.arguments[1] == instances
-        assert direct.arguments == (6 * len(direct.buffers["splats"]) // 8, 1)
+        assert direct.arguments == (direct.corners * len(direct.buffers["splats"]) // 8, 1)
         assert 0 < indirect.arguments[0] < direct.arguments[0]
 
 

@@ -95,4 +95,4 @@ def uploaded(device: Device, drawn: Drawn) -> SortedSplats:
     words = np.array([drawn.arguments[0], 1, 0, 0], np.uint32)
     held = {name: device.buffer(drawn.buffers[name], name=name) for name in ("splats", "order")}
     arguments = device.buffer(words, name="arguments", indirect=True)
-    return SortedSplats(arguments=arguments, **held)
+    return SortedSplats(arguments=arguments, corners=drawn.corners, **held)

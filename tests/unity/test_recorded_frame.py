@@ -32,6 +32,7 @@ from mua.asset.avatar import Avatar
 from mua.asset.tensors import Storage
 from mua.avatar.camera import EYE_DISTANCE, Camera, orbit, stereo
 from mua.avatar.decode import Splats, decode_clip_frame
+from mua.avatar.level_choice import splat_corners
 from mua.avatar.rendering import render_premultiplied
 from mua.gpu import Device
 from mua.kernels.splat_project import HIDDEN, LAST_KEY
@@ -203,6 +204,38 @@ def test_a_crowd_of_more_splats_than_a_group_sorts_is_in_order_too(
     )
 
 
+def test_splats_are_triangles_from_where_the_desktop_player_draws_them_so(
+    csharp: CSharp, frame_program: Path, device: Device, tmp_path: Path
+) -> None:
+    """On both sides of the distance from which on they are."""
+    file = tmp_path / "a.muaavatar"
+    write(file, synthetic_avatar(1), storage="f16")
+    avatar = read(file)
+    box = avatar.bounds + root_positions(avatar.rig, avatar.clips[0])[0]
+    near = orbit(box, screen=(64, 48))
+
+    def away(factor: float) -> Camera:
+        view = near.view.copy()
+        view[:3, 3] += (factor - 1) * (view[:3, :3] @ box.mean(axis=0) + view[:3, 3])
+        return replace(near, view=view)
+
+    count = len(avatar.rig.texels.texels)
+    low, high = 0.01, 100.0
+    while high / low > 1.001:
+        middle = (low * high) ** 0.5
+        low, high = (low, middle) if splat_corners([box], count + count % 2, [away(middle)]) == 3 else (middle, high)
+    lines = [f"decode 0 0.0 {' '.join(map(repr, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0)))} 0"]
+    for label, factor in (("near", 0.99 * low), ("far", 1.01 * high)):
+        lines += [*eye_lines([away(factor)]), f"sort {label}"]
+    scenario = tmp_path / "scenario.txt"
+    scenario.write_text("\n".join([*lines, ""]))
+    csharp.run(frame_program, ROOT / "ComputeShaders", tmp_path / "recording", scenario, file)
+    kept = replay(device, tmp_path / "recording").kept
+    for label, corners in (("near", 6), ("far", 3)):
+        words = kept[f"{label} arguments"]
+        assert words[0] == corners * words[VISIBLE_WORD] > 0
+
+
 def test_poses_of_all_kinds_are_those_of_the_reference(
     csharp: CSharp, frame_program: Path, device: Device, tmp_path: Path
 ) -> None:
@@ -233,8 +266,9 @@ def test_poses_of_all_kinds_are_those_of_the_reference(
 def test_the_picture_agrees_with_the_cpu_rasteriser(recorded: Recorded, device: Device, shot: Shot) -> None:
     """By the desktop player's draw of what the package's frame left: splat_draw.hlsl is the same file."""
     kept, order = (device.buffer(recorded.kept(shot, name), name=name) for name in ("splats", "order"))
-    arguments = device.buffer(recorded.kept(shot, "arguments"), name="arguments", indirect=True)
-    splats, cameras = SortedSplats(kept, order, arguments), recorded.cameras
+    words = recorded.kept(shot, "arguments")
+    arguments = device.buffer(words, name="arguments", indirect=True)
+    splats, cameras = SortedSplats(kept, order, arguments, int(words[0] // words[4])), recorded.cameras
     image = draw_image(device, SplatRenderer(device, image_format(device)), splats, cameras[shot.label])
     for found, camera in zip(np.split(image, shot.eyes, axis=1), cameras[shot.label], strict=True):
         assert psnr(found, render_premultiplied(recorded.exact[shot.label], camera)) > LEAST_PSNR

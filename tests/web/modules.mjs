@@ -25,7 +25,7 @@ import { read, readStage } from "../../python/mua/web/format/read.js";
 import { Stages } from "../../python/mua/web/format/stages.js";
 import { expanded, half } from "../../python/mua/web/format/tensors.js";
 import { handleOf } from "../../python/mua/web/handle.js";
-import { chooseLevels, texelPixels } from "../../python/mua/web/level_choice.js";
+import { chooseLevels, splatCorners, texelPixels } from "../../python/mua/web/level_choice.js";
 import { Levels } from "../../python/mua/web/levels.js";
 import { groundHeight, shadowArea } from "../../python/mua/web/overlays.js";
 import { boxAround } from "../../python/mua/web/placement.js";
@@ -152,6 +152,9 @@ function views(box) {
     seen: seen(camera),
     eyes,
     texelOfEyes: texelPixels(0.01, box, eyes).texel,
+    fewest: [[camera], eyes].map((cameras) => {
+      for (let splats = 1; ; splats++) if (splatCorners([box, around], splats, cameras) === 3) return splats;
+    }),
   };
 }
 

@@ -5,6 +5,7 @@ import shutil
 import subprocess
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import count
 from pathlib import Path
 from typing import Any
 
@@ -23,7 +24,7 @@ from mua.asset.read import decode_tree, parse_checked, read
 from mua.asset.write import encode
 from mua.avatar.camera import EYE_DISTANCE, orbit, perspective, sees, stereo
 from mua.avatar.coarser import REACH, at_level, coarsest, texel_length
-from mua.avatar.level_choice import texel_pixels
+from mua.avatar.level_choice import splat_corners, texel_pixels
 from mua.kernels.inverse_dwt import texel_tiles, upsampling_taps
 from mua.kernels.splat_project import pack_texels
 from mua.player.draw import view_projection
@@ -251,6 +252,10 @@ def test_cameras_are_those_of_python(scale: float) -> None:
     expected["texelOfEyes"] = texel_pixels(0.01, box, eyes)[1]
     around = np.array([camera.position - 0.1, camera.position + 0.1])
     expected["within"], expected["texelWithin"] = texel_pixels(0.01, around, [camera])
+    expected["fewest"] = [
+        next(splats for splats in count(1) if splat_corners([box, around], splats, cameras) == 3)
+        for cameras in ([camera], eyes)
+    ]
     for eye, theirs in zip(found["eyes"], eyes, strict=True):
         assert eye["screen"] == list(theirs.screen)
         for name, value in {"view": theirs.view, "viewProjection": view_projection(theirs)}.items():

@@ -1,3 +1,4 @@
+using System;
 using UnityEngine;
 
 namespace Mua
@@ -88,6 +89,15 @@ namespace Mua
                 }
             }
             return false;
+        }
+
+        /// <summary>Pixels of a square whose side is the diagonal of a box, as far away as the box's middle.</summary>
+        public double Covered(Vector3 low, Vector3 high)
+        {
+            var eye = new Vector3(Middle.x, Middle.y, Middle.z);
+            double focal = Projection[0].m11 * Screen[1] / 2, away = ((low + high) / 2 - eye).magnitude;
+            double side = (high - low).magnitude * focal / Math.Max(away, Near);
+            return side * side;
         }
 
         private static bool Sees(in Matrix4x4 viewProjection, Vector3 low, Vector3 high)

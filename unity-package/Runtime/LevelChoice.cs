@@ -19,12 +19,13 @@ namespace Mua
     }
 
     /// <summary>
-    /// The choice of avatars' levels of detail by the size of their texels on the screen and a budget of splats, as in
+    /// The choice of avatars' levels of detail and of splats' shapes by their size on the screen, and a budget of splats, as in
     /// python/mua/avatar/level_choice.py; tests/golden/level_choice.json holds both to it.
     /// </summary>
     internal static class LevelChoice
     {
         private const double LargestTexel = 0.65; // pixels; texels up to this size look like smaller ones
+        private const double LargestTriangle = 32; // pixels of a quad, about; one triangle costs less than two up to this size
         private const double Hysteresis = 1.15; // times: texels must look so much larger before a finer level comes back
 
         /// <summary>The coarsest level with texels up to LargestTexel; one that is shown stays a little longer.</summary>
@@ -66,6 +67,16 @@ namespace Mua
                 spare -= seen.Counts[level] - Last(seen);
                 seen.Level = level;
             }
+        }
+
+        /// <summary>
+        /// Vertices by which each splat is drawn: 3 where splats are small, one triangle around the quad; else 6, its halves.
+        /// Both make the same picture.
+        /// </summary>
+        /// <param name="covered">Square pixels that all quads cover, about.</param>
+        public static int Corners(double covered, int splats)
+        {
+            return covered <= LargestTriangle * splats ? 3 : 6;
         }
 
         private static int Last(in AvatarSeen seen)

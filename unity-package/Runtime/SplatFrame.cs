@@ -64,6 +64,9 @@ namespace Mua
         /// </summary>
         public int SplatCount { get; private set; }
 
+        /// <summary>Vertices by which the draw makes a splat, 3 or 6, for the eyes of the last Project.</summary>
+        public int Corners { get; private set; } = 6;
+
         /// <summary>[N, 8] words, as pack_splats of python/mua/kernels/splat_project.py lays them out.</summary>
         public GraphicsBuffer Splats { get; private set; }
 
@@ -123,6 +126,7 @@ namespace Mua
             low = new Vector3(float.MaxValue, float.MaxValue, float.MaxValue);
             high = -low;
             int first = 0;
+            double covered = 0;
             SplatCount = 0;
             for (int i = 0; i < avatars.Length; i++)
             {
@@ -139,8 +143,13 @@ namespace Mua
                     low = Vector3.Min(low, avatar.Low);
                     high = Vector3.Max(high, avatar.High);
                 }
-                SplatCount = i < shown ? first : SplatCount;
+                if (i < shown)
+                {
+                    SplatCount = first;
+                    covered += Eyes.Covered(avatar.Low, avatar.High);
+                }
             }
+            Corners = LevelChoice.Corners(covered, SplatCount);
         }
 
         private void CreateBuffers(long placed)

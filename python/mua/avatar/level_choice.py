@@ -1,10 +1,10 @@
-"""The choice of avatars' levels of detail by the size of their texels on the screen and a budget of splats.
+"""The choice of avatars' levels of detail and of splats' shapes by their size on the screen, and a budget of splats.
 
 unity-package/Runtime/LevelChoice.cs and web/level_choice.js choose alike; tests/golden/level_choice.json holds all to
 it.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +13,7 @@ from mua.arrays import Array
 from mua.avatar.camera import Camera
 
 LARGEST_TEXEL = 0.65  # pixels along a side; texels up to this size look the same as smaller ones
+LARGEST_TRIANGLE = 32.0  # pixels of a quad, about; up to this size one triangle costs less than two halves
 HYSTERESIS = 1.15  # factor by which texels must look larger before a finer level returns
 
 
@@ -33,10 +34,29 @@ def texel_pixels(
 ) -> tuple[float, float]:
     """Metres of the box from the middle of the eyes, and pixels along a side of a texel at its nearest point."""
     camera = cameras[0]
-    eye = np.mean([camera.position for camera in cameras], axis=0)
+    eye = _middle(cameras)
     away = float(np.linalg.norm(np.maximum(np.maximum(box[0] - eye, eye - box[1]), 0)))
     focal = float(camera.projection[1, 1]) * camera.screen[1] / 2
     return away, length * focal / max(away, camera.near)
+
+
+def splat_corners(
+    boxes: Iterable[Array],  # [2, 3] of each avatar in view, metres
+    splats: int,  # of all of them
+    cameras: Sequence[Camera],  # one or two eyes
+) -> int:
+    """Vertices of each splat: 3 where splats are small, one triangle around the quad; else 6, the quad's halves.
+
+    Both make the same picture: the triangle has twice the area, but is half of the triangles and of the vertices. Quads
+    are taken to cover together the squares on the diagonals of the avatars' boxes.
+    """
+    eye, camera = _middle(cameras), cameras[0]
+    focal = float(camera.projection[1, 1]) * camera.screen[1] / 2
+    covered = 0.0
+    for low, high in boxes:
+        away = max(float(np.linalg.norm((low + high) / 2 - eye)), camera.near)
+        covered += (float(np.linalg.norm(high - low)) * focal / away) ** 2
+    return 3 if covered <= LARGEST_TRIANGLE * splats else 6
 
 
 def choose_level(seen: Seen) -> int:
@@ -71,3 +91,8 @@ def choose_levels(
                 spare -= counts[level] - counts[-1]
                 break
     return levels
+
+
+def _middle(cameras: Sequence[Camera]) -> Array:
+    """Place [3] between the eyes, metres."""
+    return np.asarray(np.mean([camera.position for camera in cameras], axis=0))

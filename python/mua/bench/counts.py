@@ -214,10 +214,11 @@ def _draw(
     camera = eye_before(avatar.bounds, front_of(skeleton, clip.rotations[0], clip.translations[0]), distance)
     frame.sort(commands, [camera])
     commands.submit()
-    visible = int(frame.arguments.read()[VISIBLE_WORD])
+    arguments = frame.arguments.read()
+    visible, triangles = int(arguments[VISIBLE_WORD]), int(arguments[0]) // 3
     at = fragments(device, frame.sorted, camera)
     whole = int(at.sum(dtype=float))
-    drawn = Drawn(distance, 2 * visible, whole, whole / max(int(np.count_nonzero(at)), 1))
+    drawn = Drawn(distance, triangles, whole, whole / max(int(np.count_nonzero(at)), 1))
     return commands.bound, visible, drawn
 
 

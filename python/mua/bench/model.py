@@ -19,11 +19,10 @@ from mua.bench.devices import ModelDevice
 from mua.bench.work import PROJECT_EYE, Work
 
 ENDS = ("best", "likely", "worst")
-TRIANGLES = 2  # triangles of a splat
 # A triangle that is half of a square of side s has the perimeter (2 + sqrt 2) s, and a convex shape turned at random is
 # on average as wide as its perimeter over pi. Grown by a pixel along either axis, it covers as much as the blocks do.
-BLOCK_EDGE = TRIANGLES * 2 * (2 + np.sqrt(2)) / np.pi  # fragments of both triangles per unit of s
-BLOCK_CORNER = TRIANGLES  # pixels
+BLOCK_EDGE = 2 * (2 + np.sqrt(2)) / np.pi  # fragments per unit of s, beside those inside
+BLOCK_CORNER = 1  # pixels
 FIXED = 16  # instructions of a fragment for interpolation and blending, assumed
 
 
@@ -110,7 +109,8 @@ def kernels_ms(device: ModelDevice, work: Mapping[str, Work], end: str) -> float
 
 
 def shaded(seen: Drawn) -> float:
-    """Fragments with those that run only to fill blocks of 2 x 2, for quads that are squares of one size."""
-    splats = seen.triangles / TRIANGLES
-    side = np.sqrt(seen.fragments / splats) if splats else 0.0
-    return float(seen.fragments + splats * (BLOCK_EDGE * side + BLOCK_CORNER) if seen.fragments else 0.0)
+    """Fragments with those that run only to fill blocks of 2 x 2; triangles are halves of squares of one size."""
+    if seen.fragments == 0:
+        return 0.0
+    side = np.sqrt(2 * seen.fragments / seen.triangles)
+    return float(seen.fragments + seen.triangles * (BLOCK_EDGE * side + BLOCK_CORNER))

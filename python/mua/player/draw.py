@@ -27,6 +27,7 @@ class SortedSplats:
     splats: Buffer  # [N, 8] words (mua.kernels.splat_project.pack_splats)
     order: Buffer  # [M] the visible splats, back to front
     arguments: Buffer  # [5]; the draw's first
+    corners: int  # vertices of a splat, 3 or 6
 
 
 class SplatRenderer:
@@ -61,6 +62,7 @@ class SplatRenderer:
                 view_projection=view_projection(camera),
                 screen=np.array(camera.screen, dtype=np.float32),
                 eye=eye,
+                corners=splats.corners,
             )
             render_pass.draw_indirect(splats.arguments.raw, 0)
 

@@ -30,7 +30,7 @@ class Scene:
     ) -> None:
         self._device, self._background = device, background
         self.color_format = color_format
-        self._splats = frame.sorted
+        self._frame = frame
         self._renderer = SplatRenderer(device, color_format, depth_format=DEPTH_FORMAT)
         self._overlays = Overlays(device, frame, color=color_format, depth=DEPTH_FORMAT)
         self._depth: wgpu.GPUTexture | None = None
@@ -81,7 +81,7 @@ class Scene:
                 if shown:
                     draw(render_pass, camera)
         if toggles.splats:
-            self._renderer.draw(render_pass, self._splats, cameras)
+            self._renderer.draw(render_pass, self._frame.sorted, cameras)
         for eye, camera in enumerate(cameras):
             set_eye(render_pass, eye, camera)
             if toggles.skeleton:

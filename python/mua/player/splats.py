@@ -10,6 +10,7 @@ import numpy as np
 
 from mua.arrays import Array
 from mua.avatar.camera import Camera, sees
+from mua.avatar.level_choice import splat_corners
 from mua.errors import InputError
 from mua.gpu import Buffer, Commands, Device
 from mua.kernels.splat_project import SPLAT_WORDS
@@ -59,6 +60,7 @@ class SplatFrame(Generic[P]):
         """For at least one avatar. Errors: InputError where there are too many splats for the device or the sort."""
         self.avatars = tuple(avatars)
         self._seen = (True,) * len(self.avatars)  # set by the last sort
+        self._corners = 6  # vertices of a splat, by the last sort
         if self.splat_count > MOST_SPLATS:
             raise InputError(f"{self.splat_count} splats of all avatars; expected at most {MOST_SPLATS}")
         self._load_kernels(device)
@@ -82,6 +84,11 @@ class SplatFrame(Generic[P]):
         return int(self._counts[list(self._seen)].sum())
 
     @property
+    def sorted(self) -> SortedSplats:
+        """What the last sort left to draw."""
+        return SortedSplats(self.splats, self.order, self.arguments, self._corners)
+
+    @property
     def _counts(self) -> Array:
         return np.array([avatar.splat_count + avatar.splat_count % 2 for avatar in self.avatars], dtype=int)
 
@@ -100,7 +107,6 @@ class SplatFrame(Generic[P]):
         self.arguments = buffer(FLOAT * ARGUMENTS, name="arguments", indirect=True)
         self.half_sorted = buffer(FLOAT * splats, name="half_sorted")
         self.order = buffer(FLOAT * splats, name="order")
-        self.sorted = SortedSplats(self.splats, self.order, self.arguments)
 
     def sort(self, commands: Commands, cameras: Sequence[Camera]) -> None:
         """Append the dispatches from posed texels to `sorted`, the splats that one or two eyes see, back to front.
@@ -114,6 +120,8 @@ class SplatFrame(Generic[P]):
         for avatar, first_splat, seen in zip(self.avatars, self.first_splats, self._seen, strict=True):
             if seen:
                 self._project(commands, avatar, first_splat, cameras)
+        boxes = (avatar.bounds for avatar, seen in zip(self.avatars, self._seen, strict=True) if seen)
+        self._corners = splat_corners(boxes, self.sorted_count, cameras)
         self._sort_digit(commands, self.keys, self.half_sorted, second_pass=0)
         self._sort_digit(commands, self.half_sorted, self.order, second_pass=1)
 
@@ -157,7 +165,7 @@ class SplatFrame(Generic[P]):
         commands.dispatch(self._count_digits, blocks, {"keys": keys, **counts}, **constants)
         commands.dispatch(self._scan_digits, (DIGITS // SCANNED, 1, 1), totals, **constants)
         moved = {"keys": keys, **totals, "sorted": sorted}
-        commands.dispatch(self._scatter_digits, blocks, moved, **constants, instances=1)
+        commands.dispatch(self._scatter_digits, blocks, moved, **constants, instances=1, corners=self._corners)
 
 
 def _reach(

@@ -6,7 +6,6 @@
 
 const HIDDEN = 0xffff;
 const KEY_BYTES = 2;
-const VERTICES_PER_SPLAT = 6;
 
 /** The stable ascending order of the keys that are not hidden. Reference: python/mua/kernels/splat_sort.py. */
 export function orderOf(/** @type {Uint16Array} */ keys) {
@@ -43,5 +42,5 @@ export function writeOrder(
   /** @type {Uint32Array} */ order,
 ) {
   device.write(splats.order, order);
-  device.write(splats.arguments, Uint32Array.of(VERTICES_PER_SPLAT * order.length, 1, 0, 0, order.length));
+  device.write(splats.arguments, Uint32Array.of(splats.corners * order.length, 1, 0, 0, order.length));
 }

@@ -56,7 +56,7 @@ export class Scene {
 
   /** @param {GPURenderPassEncoder} pass @param {SplatFrame} frame @param {Camera} camera @param {number} eye */
   drawSplats(pass, frame, camera, eye) {
-    const constants = { view_projection: camera.viewProjection, screen: camera.screen, eye };
+    const constants = { view_projection: camera.viewProjection, screen: camera.screen, eye, corners: frame.corners };
     this.splats.bind(pass, { order: frame.order, splats: frame.splats }, constants);
     pass.drawIndirect(frame.arguments, 0);
   }

@@ -5,6 +5,7 @@ import { sees } from "./camera.js";
 import { FLOAT, groups } from "./channels.js";
 import { AvatarError } from "./error.js";
 import { kernelsOf } from "./kernel.js";
+import { splatCorners } from "./level_choice.js";
 import { SplatProject } from "./wgsl/splat_project.js";
 import { CountDigits, ScanDigits, ScatterDigits } from "./wgsl/splat_sort.js";
 
@@ -37,6 +38,7 @@ export class SplatFrame {
   constructor(/** @type {import("./device.js").Memory} */ memory, /** @type {AvatarFrame[]} */ avatars) {
     this.avatars = avatars;
     this.seen = avatars.map(() => true); // by the last sort
+    this.corners = 6; // vertices of a splat, by the last sort
     const finest = avatars.map((avatar) => even(avatar.buffers.level(0).splatCount));
     const count = finest.reduce((all, one) => all + one, 0);
     if (count > MOST_SPLATS) throw new AvatarError(`${count} splats of all avatars; expected at most ${MOST_SPLATS}`);
@@ -80,6 +82,8 @@ export class SplatFrame {
     this.seen = this.avatars.map(
       ({ places, bounds }) => places.length > 0 && cameras.some((camera) => sees(camera, reach(bounds))),
     );
+    const boxes = this.avatars.filter((_, i) => this.seen[i]).map(({ bounds }) => bounds);
+    this.corners = splatCorners(boxes, this.sortedCount, cameras);
     const { starts } = this;
     this.avatars.forEach((avatar, i) => {
       if (this.seen[i]) this.project(pass, avatar, starts[i], cameras);
@@ -128,7 +132,7 @@ export class SplatFrame {
     const blocks = [Math.max(groups(count, SORTED), 1), 1, 1]; // the first one writes the draw's arguments
     const counts = { digit_counts: this.digitCounts, arguments: this.arguments };
     const totals = { ...counts, digit_totals: this.digitTotals };
-    const constants = { second_pass, key_count: count, instances: 1 };
+    const constants = { second_pass, key_count: count, instances: 1, corners: this.corners };
     this.kernels.CountDigits.dispatch(pass, blocks, { keys, ...counts }, constants);
     this.kernels.ScanDigits.dispatch(pass, [DIGITS / SCANNED, 1, 1], totals, constants);
     this.kernels.ScatterDigits.dispatch(pass, blocks, { keys, ...totals, sorted }, constants);

@@ -8,8 +8,6 @@ namespace Mua
     /// </summary>
     internal sealed class SplatDraw : IDisposable
     {
-        public const int VerticesPerSplat = 6;
-
         private const string File = "the splat shader";
         private const int IndirectPass = 0, DirectPass = 1;
 
@@ -17,6 +15,7 @@ namespace Mua
         private static readonly int Splats = Shader.PropertyToID("splats");
         private static readonly int ViewProjection = Shader.PropertyToID("view_projection");
         private static readonly int Screen = Shader.PropertyToID("screen");
+        private static readonly int Corners = Shader.PropertyToID("corners");
         private static readonly int EyeCount = Shader.PropertyToID("eye_count");
         private static readonly int VisibleArguments = Shader.PropertyToID("visible_arguments");
 
@@ -47,10 +46,11 @@ namespace Mua
             Properties.SetMatrixArray(ViewProjection, frame.Eyes.DeviceViewProjection);
             Properties.SetVector(Screen, new Vector4(frame.Eyes.Screen[0], frame.Eyes.Screen[1], 0, 0));
             Properties.SetInteger(EyeCount, frame.Eyes.Count);
+            Properties.SetInteger(Corners, frame.Corners);
             Properties.SetBuffer(VisibleArguments, frame.Arguments);
             return Indirect
                 ? AvatarDraw.Indirect(Material, IndirectPass, Properties, frame.IndirectArguments)
-                : AvatarDraw.Direct(Material, DirectPass, Properties, VerticesPerSplat * frame.SplatCount);
+                : AvatarDraw.Direct(Material, DirectPass, Properties, frame.Corners * frame.SplatCount);
         }
 
         public void Dispose()

@@ -25,6 +25,7 @@ namespace Mua
         private static readonly int SecondPass = Shader.PropertyToID("second_pass");
         private static readonly int KeyCount = Shader.PropertyToID("key_count");
         private static readonly int Instances = Shader.PropertyToID("instances");
+        private static readonly int Corners = Shader.PropertyToID("corners");
 
         private readonly Kernel countDigits;
         private readonly Kernel scanDigits;
@@ -70,6 +71,7 @@ namespace Mua
             scatterDigits.Set(commands, SecondPass, secondPass);
             scatterDigits.Set(commands, KeyCount, frame.SplatCount);
             scatterDigits.Set(commands, Instances, instances);
+            scatterDigits.Set(commands, Corners, frame.Corners);
             scatterDigits.Dispatch(commands, Kernel.Groups(frame.SplatCount, Sorted), 1, 1);
         }
     }

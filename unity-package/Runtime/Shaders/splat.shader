@@ -25,6 +25,7 @@ Shader "Hidden/MUA/Splat"
         float4x4 view_projection[2]; // of each eye, clip y up
         float4 screen; // width and height of one eye, pixels
         uint eye_count;
+        uint corners; // vertices of a splat, 3 or 6
 
         struct Attributes
         {
@@ -47,7 +48,8 @@ Shader "Hidden/MUA/Splat"
             if (isVisible)
             {
                 uint eye = boundEye(eye_count);
-                varyings.splat = splatVertex(attributes.vertex, eye, screen.xy, view_projection[eye], order, splats);
+                varyings.splat = splatVertex(
+                    attributes.vertex, corners, eye, screen.xy, view_projection[eye], order, splats);
                 varyings.splat.position = targetPosition(varyings.splat.position);
                 varyings.splat.color.rgb = SHADE3(targetColor(varyings.splat.color.rgb));
             }

@@ -10,11 +10,12 @@ cbuffer Constants
     float4x4 view_projection; // of this eye, clip z in 0..w
     float2 screen; // of one eye, pixels
     uint eye;
+    uint corners; // vertices of a splat, 3 or 6
 };
 
 SplatVaryings SplatVert(uint vertex : SV_VertexID)
 {
-    return splatVertex(vertex, eye, screen, view_projection, order, splats);
+    return splatVertex(vertex, corners, eye, screen, view_projection, order, splats);
 }
 
 // How many splats are drawn at a pixel.

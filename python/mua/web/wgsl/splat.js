@@ -2,7 +2,7 @@
 
 /** @type {import("../shader.js").Shader} */
 export const SplatVert = {
-  ...{"stage": "vert", "entry": "SplatVert", "buffers": [{"name": "order", "binding": 0, "read_only": true, "scalar": "uint", "stride": 4}, {"name": "splats", "binding": 1, "read_only": true, "scalar": "uint", "stride": 16}], "constants": [{"name": "view_projection", "offset": 0, "scalar": "float", "shape": [4, 4], "strides": [4, 16], "used": true}, {"name": "screen", "offset": 64, "scalar": "float", "shape": [2], "strides": [4], "used": true}, {"name": "eye", "offset": 72, "scalar": "uint", "shape": [], "strides": [], "used": true}], "constants_binding": 2, "threads": [1, 1, 1]},
+  ...{"stage": "vert", "entry": "SplatVert", "buffers": [{"name": "order", "binding": 0, "read_only": true, "scalar": "uint", "stride": 4}, {"name": "splats", "binding": 1, "read_only": true, "scalar": "uint", "stride": 16}], "constants": [{"name": "view_projection", "offset": 0, "scalar": "float", "shape": [4, 4], "strides": [4, 16], "used": true}, {"name": "screen", "offset": 64, "scalar": "float", "shape": [2], "strides": [4], "used": true}, {"name": "eye", "offset": 72, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "corners", "offset": 76, "scalar": "uint", "shape": [], "strides": [], "used": true}], "constants_binding": 2, "threads": [1, 1, 1]},
   code: `struct _MatrixStorage_float4x4_ColMajorstd140_0
 {
     @align(16) data_0 : array<vec4<f32>, i32(4)>,
@@ -13,6 +13,7 @@ struct SLANG_ParameterGroup_Constants_std140_0
     @align(16) view_projection_0 : _MatrixStorage_float4x4_ColMajorstd140_0,
     @align(16) screen_0 : vec2<f32>,
     @align(8) eye_0 : u32,
+    @align(4) corners_0 : u32,
 };
 
 @binding(2) @group(0) var<uniform> Constants_0 : SLANG_ParameterGroup_Constants_std140_0;
@@ -58,10 +59,11 @@ fn splatWide_0( deviations_0 : vec2<f32>) -> vec2<f32>
     return sqrt(deviations_0 * deviations_0 + vec2<f32>(0.10262155532836914f));
 }
 
-fn splatCorner_0( corner_0 : u32) -> vec2<f32>
+fn splatCorner_0( corner_0 : u32,  corners_1 : u32) -> vec2<f32>
 {
+    var _S5 : bool = corner_0 == u32(1);
     var right_0 : bool;
-    if(corner_0 == u32(1))
+    if(_S5)
     {
         right_0 = true;
     }
@@ -77,8 +79,9 @@ fn splatCorner_0( corner_0 : u32) -> vec2<f32>
     {
         right_0 = corner_0 == u32(4);
     }
+    var _S6 : bool = corner_0 == u32(2);
     var below_0 : bool;
-    if(corner_0 == u32(2))
+    if(_S6)
     {
         below_0 = true;
     }
@@ -94,31 +97,52 @@ fn splatCorner_0( corner_0 : u32) -> vec2<f32>
     {
         below_0 = corner_0 == u32(5);
     }
-    var _S5 : i32;
+    var _S7 : i32;
+    if(corners_1 == u32(3))
+    {
+        if(_S5)
+        {
+            _S7 = i32(3);
+        }
+        else
+        {
+            _S7 = i32(-1);
+        }
+        var _S8 : f32 = f32(_S7);
+        if(_S6)
+        {
+            _S7 = i32(3);
+        }
+        else
+        {
+            _S7 = i32(-1);
+        }
+        return vec2<f32>(_S8, f32(_S7));
+    }
     if(right_0)
     {
-        _S5 = i32(1);
+        _S7 = i32(1);
     }
     else
     {
-        _S5 = i32(-1);
+        _S7 = i32(-1);
     }
-    var _S6 : f32 = f32(_S5);
+    var _S9 : f32 = f32(_S7);
     if(below_0)
     {
-        _S5 = i32(1);
+        _S7 = i32(1);
     }
     else
     {
-        _S5 = i32(-1);
+        _S7 = i32(-1);
     }
-    return vec2<f32>(_S6, f32(_S5));
+    return vec2<f32>(_S9, f32(_S7));
 }
 
 fn splatOffset_0( axis_0 : vec2<f32>,  wide_0 : vec2<f32>,  corner_1 : vec2<f32>) -> vec2<f32>
 {
-    var _S7 : f32 = wide_0.y;
-    return vec2<f32>(2.0150001049041748f) * (vec2<f32>(_S7) * corner_1 + vec2<f32>(((wide_0.x - _S7) * dot(axis_0, corner_1))) * axis_0);
+    var _S10 : f32 = wide_0.y;
+    return vec2<f32>(2.0150001049041748f) * (vec2<f32>(_S10) * corner_1 + vec2<f32>(((wide_0.x - _S10) * dot(axis_0, corner_1))) * axis_0);
 }
 
 fn splatShare_0( deviations_1 : vec2<f32>,  wide_1 : vec2<f32>) -> f32
@@ -133,27 +157,28 @@ struct SplatVaryings_0
     @interpolate(flat) @location(1) color_0 : vec4<f32>,
 };
 
-fn splatVertex_0( _S8 : u32,  _S9 : u32,  _S10 : vec2<f32>,  _S11 : mat4x4<f32>) -> SplatVaryings_0
+fn splatVertex_0( _S11 : u32,  _S12 : u32,  _S13 : u32,  _S14 : vec2<f32>,  _S15 : mat4x4<f32>) -> SplatVaryings_0
 {
-    var splat_0 : u32 = u32(2) * order_0[_S8 / u32(6)];
+    var _S16 : u32 = _S11 / _S12;
+    var splat_0 : u32 = u32(2) * order_0[_S16];
     var head_0 : vec4<u32> = splats_0[splat_0];
     var tail_0 : vec4<u32> = splats_0[splat_0 + u32(1)];
-    var color_1 : vec4<f32> = unpackColor_0(vec2<u32>(head_0.w, tail_0.x), _S9);
-    var _S12 : u32;
-    if(_S9 == u32(0))
+    var color_1 : vec4<f32> = unpackColor_0(vec2<u32>(head_0.w, tail_0.x), _S13);
+    var _S17 : u32;
+    if(_S13 == u32(0))
     {
-        _S12 = tail_0.y;
+        _S17 = tail_0.y;
     }
     else
     {
-        _S12 = tail_0.z;
+        _S17 = tail_0.z;
     }
-    var major_0 : vec2<f32> = unpackHalves_0(_S12);
-    var _S13 : f32 = length(major_0);
-    var _S14 : f32 = halfAt_0(tail_0.w, _S9);
-    var deviations_2 : vec2<f32> = vec2<f32>(_S13, _S14);
-    var axis_1 : vec2<f32> = major_0 / vec2<f32>(max(_S13, 1.17549435082228751e-38f));
-    var seen_0 : bool = _S14 > 0.0f;
+    var major_0 : vec2<f32> = unpackHalves_0(_S17);
+    var _S18 : f32 = length(major_0);
+    var _S19 : f32 = halfAt_0(tail_0.w, _S13);
+    var deviations_2 : vec2<f32> = vec2<f32>(_S18, _S19);
+    var axis_1 : vec2<f32> = major_0 / vec2<f32>(max(_S18, 1.17549435082228751e-38f));
+    var seen_0 : bool = _S19 > 0.0f;
     var centre_0 : vec3<f32>;
     if(seen_0)
     {
@@ -164,11 +189,12 @@ fn splatVertex_0( _S8 : u32,  _S9 : u32,  _S10 : vec2<f32>,  _S11 : mat4x4<f32>)
         centre_0 = vec3<f32>(vec3<i32>(i32(0)));
     }
     var wide_2 : vec2<f32> = splatWide_0(deviations_2);
-    var corner_2 : vec2<f32> = splatCorner_0(_S8 % u32(6));
-    var clip_0 : vec4<f32> = (((vec4<f32>(centre_0, 1.0f)) * (_S11)));
-    var _S15 : f32 = clip_0.w;
-    var place_0 : vec2<f32> = clip_0.xy / vec2<f32>(_S15) + splatOffset_0(axis_1, wide_2, corner_2) * vec2<f32>(2.0f, -2.0f) / _S10;
-    var depth_0 : f32 = clamp(clip_0.z / _S15, 0.0f, 1.0f);
+    var _S20 : u32 = _S11 % _S12;
+    var corner_2 : vec2<f32> = splatCorner_0(_S20, _S12);
+    var clip_0 : vec4<f32> = (((vec4<f32>(centre_0, 1.0f)) * (_S15)));
+    var _S21 : f32 = clip_0.w;
+    var place_0 : vec2<f32> = clip_0.xy / vec2<f32>(_S21) + splatOffset_0(axis_1, wide_2, corner_2) * vec2<f32>(2.0f, -2.0f) / _S14;
+    var depth_0 : f32 = clamp(clip_0.z / _S21, 0.0f, 1.0f);
     var varyings_0 : SplatVaryings_0;
     varyings_0.position_0 = vec4<f32>(2.0f, 2.0f, 0.0f, 1.0f);
     if(seen_0)
@@ -183,7 +209,8 @@ fn splatVertex_0( _S8 : u32,  _S9 : u32,  _S10 : vec2<f32>,  _S11 : mat4x4<f32>)
 @vertex
 fn SplatVert(@builtin(vertex_index) vertex_0 : u32) -> SplatVaryings_0
 {
-    return splatVertex_0(vertex_0, Constants_0.eye_0, Constants_0.screen_0, mat4x4<f32>(Constants_0.view_projection_0.data_0[i32(0)][i32(0)], Constants_0.view_projection_0.data_0[i32(1)][i32(0)], Constants_0.view_projection_0.data_0[i32(2)][i32(0)], Constants_0.view_projection_0.data_0[i32(3)][i32(0)], Constants_0.view_projection_0.data_0[i32(0)][i32(1)], Constants_0.view_projection_0.data_0[i32(1)][i32(1)], Constants_0.view_projection_0.data_0[i32(2)][i32(1)], Constants_0.view_projection_0.data_0[i32(3)][i32(1)], Constants_0.view_projection_0.data_0[i32(0)][i32(2)], Constants_0.view_projection_0.data_0[i32(1)][i32(2)], Constants_0.view_projection_0.data_0[i32(2)][i32(2)], Constants_0.view_projection_0.data_0[i32(3)][i32(2)], Constants_0.view_projection_0.data_0[i32(0)][i32(3)], Constants_0.view_projection_0.data_0[i32(1)][i32(3)], Constants_0.view_projection_0.data_0[i32(2)][i32(3)], Constants_0.view_projection_0.data_0[i32(3)][i32(3)]));
+    var _S22 : SplatVaryings_0 = splatVertex_0(vertex_0, Constants_0.corners_0, Constants_0.eye_0, Constants_0.screen_0, mat4x4<f32>(Constants_0.view_projection_0.data_0[i32(0)][i32(0)], Constants_0.view_projection_0.data_0[i32(1)][i32(0)], Constants_0.view_projection_0.data_0[i32(2)][i32(0)], Constants_0.view_projection_0.data_0[i32(3)][i32(0)], Constants_0.view_projection_0.data_0[i32(0)][i32(1)], Constants_0.view_projection_0.data_0[i32(1)][i32(1)], Constants_0.view_projection_0.data_0[i32(2)][i32(1)], Constants_0.view_projection_0.data_0[i32(3)][i32(1)], Constants_0.view_projection_0.data_0[i32(0)][i32(2)], Constants_0.view_projection_0.data_0[i32(1)][i32(2)], Constants_0.view_projection_0.data_0[i32(2)][i32(2)], Constants_0.view_projection_0.data_0[i32(3)][i32(2)], Constants_0.view_projection_0.data_0[i32(0)][i32(3)], Constants_0.view_projection_0.data_0[i32(1)][i32(3)], Constants_0.view_projection_0.data_0[i32(2)][i32(3)], Constants_0.view_projection_0.data_0[i32(3)][i32(3)]));
+    return _S22;
 }
 
 `,

@@ -2,12 +2,13 @@
 
 /** @type {import("../shader.js").Shader} */
 export const CountDigits = {
-  ...{"stage": "comp", "entry": "CountDigits", "buffers": [{"name": "keys", "binding": 0, "read_only": true, "scalar": "uint", "stride": 4}, {"name": "digit_counts", "binding": 1, "read_only": false, "scalar": "uint", "stride": 4}, {"name": "arguments", "binding": 3, "read_only": false, "scalar": "uint", "stride": 4}], "constants": [{"name": "second_pass", "offset": 0, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "key_count", "offset": 4, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "instances", "offset": 8, "scalar": "uint", "shape": [], "strides": [], "used": false}], "constants_binding": 5, "threads": [256, 1, 1]},
+  ...{"stage": "comp", "entry": "CountDigits", "buffers": [{"name": "keys", "binding": 0, "read_only": true, "scalar": "uint", "stride": 4}, {"name": "digit_counts", "binding": 1, "read_only": false, "scalar": "uint", "stride": 4}, {"name": "arguments", "binding": 3, "read_only": false, "scalar": "uint", "stride": 4}], "constants": [{"name": "second_pass", "offset": 0, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "key_count", "offset": 4, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "instances", "offset": 8, "scalar": "uint", "shape": [], "strides": [], "used": false}, {"name": "corners", "offset": 12, "scalar": "uint", "shape": [], "strides": [], "used": false}], "constants_binding": 5, "threads": [256, 1, 1]},
   code: `struct SLANG_ParameterGroup_Constants_std140_0
 {
     @align(16) second_pass_0 : u32,
     @align(4) key_count_0 : u32,
     @align(8) instances_0 : u32,
+    @align(4) corners_0 : u32,
 };
 
 @binding(5) @group(0) var<uniform> Constants_0 : SLANG_ParameterGroup_Constants_std140_0;
@@ -161,12 +162,13 @@ fn CountDigits(@builtin(local_invocation_index) thread_1 : u32, @builtin(workgro
 
 /** @type {import("../shader.js").Shader} */
 export const ScanDigits = {
-  ...{"stage": "comp", "entry": "ScanDigits", "buffers": [{"name": "digit_counts", "binding": 1, "read_only": false, "scalar": "uint", "stride": 4}, {"name": "digit_totals", "binding": 2, "read_only": false, "scalar": "uint", "stride": 4}, {"name": "arguments", "binding": 3, "read_only": false, "scalar": "uint", "stride": 4}], "constants": [{"name": "second_pass", "offset": 0, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "key_count", "offset": 4, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "instances", "offset": 8, "scalar": "uint", "shape": [], "strides": [], "used": false}], "constants_binding": 5, "threads": [256, 1, 1]},
+  ...{"stage": "comp", "entry": "ScanDigits", "buffers": [{"name": "digit_counts", "binding": 1, "read_only": false, "scalar": "uint", "stride": 4}, {"name": "digit_totals", "binding": 2, "read_only": false, "scalar": "uint", "stride": 4}, {"name": "arguments", "binding": 3, "read_only": false, "scalar": "uint", "stride": 4}], "constants": [{"name": "second_pass", "offset": 0, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "key_count", "offset": 4, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "instances", "offset": 8, "scalar": "uint", "shape": [], "strides": [], "used": false}, {"name": "corners", "offset": 12, "scalar": "uint", "shape": [], "strides": [], "used": false}], "constants_binding": 5, "threads": [256, 1, 1]},
   code: `struct SLANG_ParameterGroup_Constants_std140_0
 {
     @align(16) second_pass_0 : u32,
     @align(4) key_count_0 : u32,
     @align(8) instances_0 : u32,
+    @align(4) corners_0 : u32,
 };
 
 @binding(5) @group(0) var<uniform> Constants_0 : SLANG_ParameterGroup_Constants_std140_0;
@@ -269,12 +271,13 @@ fn ScanDigits(@builtin(local_invocation_index) thread_0 : u32, @builtin(workgrou
 
 /** @type {import("../shader.js").Shader} */
 export const ScatterDigits = {
-  ...{"stage": "comp", "entry": "ScatterDigits", "buffers": [{"name": "keys", "binding": 0, "read_only": true, "scalar": "uint", "stride": 4}, {"name": "digit_counts", "binding": 1, "read_only": false, "scalar": "uint", "stride": 4}, {"name": "digit_totals", "binding": 2, "read_only": false, "scalar": "uint", "stride": 4}, {"name": "arguments", "binding": 3, "read_only": false, "scalar": "uint", "stride": 4}, {"name": "sorted", "binding": 4, "read_only": false, "scalar": "uint", "stride": 4}], "constants": [{"name": "second_pass", "offset": 0, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "key_count", "offset": 4, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "instances", "offset": 8, "scalar": "uint", "shape": [], "strides": [], "used": true}], "constants_binding": 5, "threads": [256, 1, 1]},
+  ...{"stage": "comp", "entry": "ScatterDigits", "buffers": [{"name": "keys", "binding": 0, "read_only": true, "scalar": "uint", "stride": 4}, {"name": "digit_counts", "binding": 1, "read_only": false, "scalar": "uint", "stride": 4}, {"name": "digit_totals", "binding": 2, "read_only": false, "scalar": "uint", "stride": 4}, {"name": "arguments", "binding": 3, "read_only": false, "scalar": "uint", "stride": 4}, {"name": "sorted", "binding": 4, "read_only": false, "scalar": "uint", "stride": 4}], "constants": [{"name": "second_pass", "offset": 0, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "key_count", "offset": 4, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "instances", "offset": 8, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "corners", "offset": 12, "scalar": "uint", "shape": [], "strides": [], "used": true}], "constants_binding": 5, "threads": [256, 1, 1]},
   code: `struct SLANG_ParameterGroup_Constants_std140_0
 {
     @align(16) second_pass_0 : u32,
     @align(4) key_count_0 : u32,
     @align(8) instances_0 : u32,
+    @align(4) corners_0 : u32,
 };
 
 @binding(5) @group(0) var<uniform> Constants_0 : SLANG_ParameterGroup_Constants_std140_0;
@@ -845,7 +848,7 @@ fn placeDigits_0( thread_7 : u32,  group_0 : u32,  groups_0 : u32) -> u32
 
 fn writeArguments_0( total_4 : u32)
 {
-    arguments_0[i32(0)] = u32(6) * total_4;
+    arguments_0[i32(0)] = Constants_0.corners_0 * total_4;
     arguments_0[i32(1)] = Constants_0.instances_0;
     arguments_0[i32(2)] = u32(0);
     arguments_0[i32(3)] = u32(0);
