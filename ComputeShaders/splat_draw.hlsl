@@ -115,7 +115,8 @@ float2 splatCorner(uint corner, uint corners)
 SplatVaryings splatVertex(uint vertex, uint corners, uint eye, float2 screen, float4x4 viewProjection,
                           StructuredBuffer<uint> order, StructuredBuffer<uint4> splats)
 {
-    uint splat = 2 * order[vertex / corners];
+    uint place = corners == 3 ? vertex / 3 : vertex / 6; // by constants, which costs no division
+    uint splat = 2 * order[place];
     uint4 head = splats[splat];
     uint4 tail = splats[splat + 1];
     float4 color = unpackColor(uint2(head.w, tail.x), eye);
@@ -126,16 +127,16 @@ SplatVaryings splatVertex(uint vertex, uint corners, uint eye, float2 screen, fl
     float3 centre = seen ? asfloat(head.xyz) : 0; // chosen as integers, so that head.w stays one: README.md
 
     float2 wide = splatWide(deviations);
-    float2 corner = splatCorner(vertex % corners, corners);
+    float2 corner = splatCorner(vertex - corners * place, corners);
     float2 pixels = splatOffset(axis, wide, corner);
     float4 clip = mul(viewProjection, float4(centre, 1));
-    float2 place = clip.xy / clip.w + pixels * float2(2, -2) / screen;
+    float2 at = clip.xy / clip.w + pixels * float2(2, -2) / screen;
     float depth = clamp(clip.z / clip.w, LEAST_DEPTH, 1);
 
     SplatVaryings varyings;
     varyings.position = float4(2, 2, 0, 1);
     if (seen)
-        varyings.position = float4(place, depth, 1);
+        varyings.position = float4(at, depth, 1);
     varyings.offset = SHADE2(corner);
     varyings.color = SHADE4(color.rgb, color.a * splatShare(deviations, wide));
     return varyings;

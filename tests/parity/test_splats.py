@@ -137,12 +137,12 @@ def test_small_splats_are_triangles_large_ones_quads_and_both_make_the_same_pict
     renderer, other = SplatRenderer(device, image_format(device)), 9 - corners
     words[0] = other * words[VISIBLE_WORD]
     arguments = device.buffer(words, name="arguments", indirect=True)
-    pictures = [
+    one, two = (
         draw_image(device, renderer, splats, cameras)
         for splats in (found, replace(found, arguments=arguments, corners=other))
-    ]
-    assert pictures[0].any()
-    np.testing.assert_allclose(*pictures, rtol=0, atol=1e-3)
+    )
+    assert one.any()
+    np.testing.assert_allclose(one, two, rtol=0, atol=1e-3)
 
 
 def test_an_avatar_without_texels_stands_among_others(device: Device, tmp_path: Path) -> None:

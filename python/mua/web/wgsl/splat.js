@@ -159,26 +159,34 @@ struct SplatVaryings_0
 
 fn splatVertex_0( _S11 : u32,  _S12 : u32,  _S13 : u32,  _S14 : vec2<f32>,  _S15 : mat4x4<f32>) -> SplatVaryings_0
 {
-    var _S16 : u32 = _S11 / _S12;
-    var splat_0 : u32 = u32(2) * order_0[_S16];
-    var head_0 : vec4<u32> = splats_0[splat_0];
-    var tail_0 : vec4<u32> = splats_0[splat_0 + u32(1)];
-    var color_1 : vec4<f32> = unpackColor_0(vec2<u32>(head_0.w, tail_0.x), _S13);
-    var _S17 : u32;
-    if(_S13 == u32(0))
+    var place_0 : u32;
+    if(_S12 == u32(3))
     {
-        _S17 = tail_0.y;
+        place_0 = _S11 / u32(3);
     }
     else
     {
-        _S17 = tail_0.z;
+        place_0 = _S11 / u32(6);
     }
-    var major_0 : vec2<f32> = unpackHalves_0(_S17);
-    var _S18 : f32 = length(major_0);
-    var _S19 : f32 = halfAt_0(tail_0.w, _S13);
-    var deviations_2 : vec2<f32> = vec2<f32>(_S18, _S19);
-    var axis_1 : vec2<f32> = major_0 / vec2<f32>(max(_S18, 1.17549435082228751e-38f));
-    var seen_0 : bool = _S19 > 0.0f;
+    var splat_0 : u32 = u32(2) * order_0[place_0];
+    var head_0 : vec4<u32> = splats_0[splat_0];
+    var tail_0 : vec4<u32> = splats_0[splat_0 + u32(1)];
+    var color_1 : vec4<f32> = unpackColor_0(vec2<u32>(head_0.w, tail_0.x), _S13);
+    var _S16 : u32;
+    if(_S13 == u32(0))
+    {
+        _S16 = tail_0.y;
+    }
+    else
+    {
+        _S16 = tail_0.z;
+    }
+    var major_0 : vec2<f32> = unpackHalves_0(_S16);
+    var _S17 : f32 = length(major_0);
+    var _S18 : f32 = halfAt_0(tail_0.w, _S13);
+    var deviations_2 : vec2<f32> = vec2<f32>(_S17, _S18);
+    var axis_1 : vec2<f32> = major_0 / vec2<f32>(max(_S17, 1.17549435082228751e-38f));
+    var seen_0 : bool = _S18 > 0.0f;
     var centre_0 : vec3<f32>;
     if(seen_0)
     {
@@ -189,17 +197,16 @@ fn splatVertex_0( _S11 : u32,  _S12 : u32,  _S13 : u32,  _S14 : vec2<f32>,  _S15
         centre_0 = vec3<f32>(vec3<i32>(i32(0)));
     }
     var wide_2 : vec2<f32> = splatWide_0(deviations_2);
-    var _S20 : u32 = _S11 % _S12;
-    var corner_2 : vec2<f32> = splatCorner_0(_S20, _S12);
+    var corner_2 : vec2<f32> = splatCorner_0(_S11 - _S12 * place_0, _S12);
     var clip_0 : vec4<f32> = (((vec4<f32>(centre_0, 1.0f)) * (_S15)));
-    var _S21 : f32 = clip_0.w;
-    var place_0 : vec2<f32> = clip_0.xy / vec2<f32>(_S21) + splatOffset_0(axis_1, wide_2, corner_2) * vec2<f32>(2.0f, -2.0f) / _S14;
-    var depth_0 : f32 = clamp(clip_0.z / _S21, 0.0f, 1.0f);
+    var _S19 : f32 = clip_0.w;
+    var at_0 : vec2<f32> = clip_0.xy / vec2<f32>(_S19) + splatOffset_0(axis_1, wide_2, corner_2) * vec2<f32>(2.0f, -2.0f) / _S14;
+    var depth_0 : f32 = clamp(clip_0.z / _S19, 0.0f, 1.0f);
     var varyings_0 : SplatVaryings_0;
     varyings_0.position_0 = vec4<f32>(2.0f, 2.0f, 0.0f, 1.0f);
     if(seen_0)
     {
-        varyings_0.position_0 = vec4<f32>(place_0, depth_0, 1.0f);
+        varyings_0.position_0 = vec4<f32>(at_0, depth_0, 1.0f);
     }
     varyings_0.offset_0 = corner_2;
     varyings_0.color_0 = vec4<f32>(color_1.xyz, color_1.w * splatShare_0(deviations_2, wide_2));
@@ -209,8 +216,7 @@ fn splatVertex_0( _S11 : u32,  _S12 : u32,  _S13 : u32,  _S14 : vec2<f32>,  _S15
 @vertex
 fn SplatVert(@builtin(vertex_index) vertex_0 : u32) -> SplatVaryings_0
 {
-    var _S22 : SplatVaryings_0 = splatVertex_0(vertex_0, Constants_0.corners_0, Constants_0.eye_0, Constants_0.screen_0, mat4x4<f32>(Constants_0.view_projection_0.data_0[i32(0)][i32(0)], Constants_0.view_projection_0.data_0[i32(1)][i32(0)], Constants_0.view_projection_0.data_0[i32(2)][i32(0)], Constants_0.view_projection_0.data_0[i32(3)][i32(0)], Constants_0.view_projection_0.data_0[i32(0)][i32(1)], Constants_0.view_projection_0.data_0[i32(1)][i32(1)], Constants_0.view_projection_0.data_0[i32(2)][i32(1)], Constants_0.view_projection_0.data_0[i32(3)][i32(1)], Constants_0.view_projection_0.data_0[i32(0)][i32(2)], Constants_0.view_projection_0.data_0[i32(1)][i32(2)], Constants_0.view_projection_0.data_0[i32(2)][i32(2)], Constants_0.view_projection_0.data_0[i32(3)][i32(2)], Constants_0.view_projection_0.data_0[i32(0)][i32(3)], Constants_0.view_projection_0.data_0[i32(1)][i32(3)], Constants_0.view_projection_0.data_0[i32(2)][i32(3)], Constants_0.view_projection_0.data_0[i32(3)][i32(3)]));
-    return _S22;
+    return splatVertex_0(vertex_0, Constants_0.corners_0, Constants_0.eye_0, Constants_0.screen_0, mat4x4<f32>(Constants_0.view_projection_0.data_0[i32(0)][i32(0)], Constants_0.view_projection_0.data_0[i32(1)][i32(0)], Constants_0.view_projection_0.data_0[i32(2)][i32(0)], Constants_0.view_projection_0.data_0[i32(3)][i32(0)], Constants_0.view_projection_0.data_0[i32(0)][i32(1)], Constants_0.view_projection_0.data_0[i32(1)][i32(1)], Constants_0.view_projection_0.data_0[i32(2)][i32(1)], Constants_0.view_projection_0.data_0[i32(3)][i32(1)], Constants_0.view_projection_0.data_0[i32(0)][i32(2)], Constants_0.view_projection_0.data_0[i32(1)][i32(2)], Constants_0.view_projection_0.data_0[i32(2)][i32(2)], Constants_0.view_projection_0.data_0[i32(3)][i32(2)], Constants_0.view_projection_0.data_0[i32(0)][i32(3)], Constants_0.view_projection_0.data_0[i32(1)][i32(3)], Constants_0.view_projection_0.data_0[i32(2)][i32(3)], Constants_0.view_projection_0.data_0[i32(3)][i32(3)]));
 }
 
 `,
