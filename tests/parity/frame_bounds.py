@@ -16,13 +16,18 @@ LEAST_PSNR = 50.0  # dB of an image against the CPU rasteriser's
 
 FEWER_THAN = 31  # dispatches in a frame
 
-BRANCH_ORDER = [*["MlpMatmul"] * 3, "BlendLl", *["BlendDetail", "InverseDwt"] * 2, "UpsampleTexels"]
+_BLEND = [*["MlpMatmul"] * 3, "BlendLl", "BlendDetail", "InverseDwt", "BlendDetail"]
+_TEXELS = ["InverseDwt", "UpsampleTexels"]
+_MESH = [*["MlpMatmul"] * 3, "MlpMatmulTransposed"]
 
-PARTS_ORDER = [BRANCH_ORDER, [*["MlpMatmul"] * 3, "MlpMatmulTransposed", *BRANCH_ORDER]]  # in the parts of a decode
+PARTS_ORDER = [_BLEND, [*_TEXELS, *_MESH], _BLEND, _TEXELS]  # in the parts of a decode
+
+DECODE_ORDER = [name for part in PARTS_ORDER for name in part]
+
+HALVES = [len(PARTS_ORDER[i]) + len(PARTS_ORDER[i + 1]) for i in (0, 2)]  # dispatches, of an avatar alone in view
 
 FRAME_ORDER = [
-    *PARTS_ORDER[0],
-    *PARTS_ORDER[1],
+    *DECODE_ORDER,
     "BlendVertices",
     "SplatProject",
     *["CountDigits", "ScanDigits", "ScatterDigits"] * 2,

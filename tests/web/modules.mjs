@@ -8,6 +8,8 @@
 //   soon TOTAL BYTES...  whether the rest of so many bytes is expected soon, after so many more every 100 ms; 0: none came
 //   played CHANGES of a file: clip, time, frame, next frame and box after each change, such as ["speed", 2] or ["advance", 40]
 //   order KEYS     of splats
+//   turns          of a file of displayed frames, as turn_scenarios.py writes them: the steps of each
+//   budget         of a file of frames' milliseconds, likewise: what the next frame may hold
 //   numbers        half floats, and numbers as sentences have them
 
 import "./strict_inflate.mjs";
@@ -20,6 +22,7 @@ import { readComponents } from "../../python/mua/web/components.js";
 import { describe } from "../../python/mua/web/descriptor.js";
 import { Download } from "../../python/mua/web/download.js";
 import { orderOf } from "../../python/mua/web/early.js";
+import { FrameBudget } from "../../python/mua/web/frame_budget.js";
 import { general, scientific, shortest } from "../../python/mua/web/format/numbers.js";
 import { read, readStage } from "../../python/mua/web/format/read.js";
 import { Stages } from "../../python/mua/web/format/stages.js";
@@ -31,6 +34,7 @@ import { groundHeight, shadowArea } from "../../python/mua/web/overlays.js";
 import { boxAround } from "../../python/mua/web/placement.js";
 import { Playback } from "../../python/mua/web/playback.js";
 import { texelTiles, texelWords, upsamplingTaps } from "../../python/mua/web/prepare.js";
+import { DecodeSchedule } from "../../python/mua/web/schedule.js";
 import { skinning, world } from "../../python/mua/web/skeleton.js";
 import { surfaceMesh } from "../../python/mua/web/surface.js";
 
@@ -205,6 +209,40 @@ function soon(total, bytes) {
   });
 }
 
+/** The steps of each displayed frame. */
+function turns(lines) {
+  const schedule = new DecodeSchedule();
+  const named = (decode) => (decode ? `${decode.frame}@${decode.level}` : "-");
+  return lines.map((line) => {
+    const [number, parts, gone, ...rest] = line.split(" ").map(Number);
+    for (const key of rest.splice(0, gone)) schedule.forget(key);
+    const asks = new Map();
+    for (let left = rest.shift(); left > 0; left--) {
+      const [key, due, following, level, rank, spread, mayLag] = rest.splice(0, 7);
+      const [now, next] = [due, following].map((frame) => ({ clip: "walk", frame }));
+      asks.set(key, { due: now, following: next, level, rank, spread: spread > 0, mayLag: mayLag > 0 });
+    }
+    const steps = schedule.plan(asks, number, parts);
+    return Array.from(steps, ([key, one]) =>
+      [`${key}:${named(one.whole)}`, one.finish, Number(one.show), named(one.begin), one.parts].join(),
+    ).join(" ");
+  });
+}
+
+/** What the frame after each may hold. */
+function budgeted(lines) {
+  const budget = new FrameBudget();
+  return lines.map((line) => {
+    const [taken, most, exact, avatars, ...splats] = line.split(" ").map(Number);
+    budget.measure(taken, { most, exact: exact > 0, avatars, splats: splats[0] < 0 ? null : splats });
+    return `${budget.parts} ${budget.splats ?? -1}`;
+  });
+}
+
+const linesOf = (file) => readFileSync(file, "utf8").trimEnd().split("\n");
+
+if (what === "turns") say(turns(linesOf(given[0])));
+if (what === "budget") say(budgeted(linesOf(given[0])));
 if (what === "measured") say(await measured(given[0], Number(given[1])));
 if (what === "soon") say(soon(...given.slice(0, 1), given.slice(1).map(Number)));
 if (what === "stages") for (const one of await stages(bytes(given[0]), Number(given[1]))) say(one);

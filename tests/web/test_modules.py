@@ -14,6 +14,7 @@ import pytest
 from damaged import DAMAGED
 from malformed import MALFORMED, malformed
 from synthetic_avatar import sparse_avatar, synthetic_avatar, with_random_poses, with_surface
+from turn_scenarios import decided, run, timed, wander, written
 from unpackable import UNPACKABLE
 
 from mua.arrays import Array
@@ -230,6 +231,20 @@ def test_coarser_levels_are_those_of_python(tmp_path: Path, made: str) -> None:
 def test_levels_are_chosen_as_everywhere() -> None:
     table = GOLDEN / "level_choice.json"
     assert node("choices", table)[0] == [case["levels"] for case in json.loads(table.read_text())]
+
+
+def test_avatars_take_turns_as_in_python(tmp_path: Path) -> None:
+    for seed in range(12):
+        told = list(run(wander(seed, 400)))
+        (tmp_path / "frames.txt").write_text("".join(written(frame) + "\n" for frame, _, _ in told))
+        assert node("turns", tmp_path / "frames.txt")[0] == [decided(steps) for _, _, steps in told], seed
+
+
+def test_a_frame_may_hold_what_it_may_in_python(tmp_path: Path) -> None:
+    for seed in range(6):
+        lines, decisions = timed(seed, 6000)
+        (tmp_path / "times.txt").write_text("".join(line + "\n" for line in lines))
+        assert node("budget", tmp_path / "times.txt")[0] == decisions, seed
 
 
 @pytest.mark.parametrize("scale", [1, 0.1])

@@ -6,7 +6,7 @@ Dispatches are those that the player appends; fragments are counted by drawing.
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from mua.arrays import Array
 from mua.asset.count import parameters
 from mua.avatar.camera import Camera, orbit
 from mua.avatar.coarser import coarsest, texel_length
+from mua.avatar.decode_turns import ALONE
 from mua.avatar.level_choice import LARGEST_TEXEL
 from mua.bench.work import NOTHING, Work, by_kernel
 from mua.errors import InputError
@@ -29,6 +30,7 @@ from mua.pose.resample import resample
 SCREEN = (1680, 1760)  # pixels of one eye: the default of a Quest 3
 FOCAL = 790  # pixels
 DISTANCES = (2.2, 1.0, 0.6)  # metres from the figure's middle
+T = TypeVar("T")
 VISIBLE_WORD = 4  # word of the arguments that splat_sort writes: how many splats some eye sees
 
 
@@ -61,8 +63,8 @@ class LevelCounts:
     texels: int  # along a side
     splats: int
     chosen: float  # metres from the nearest point of the figure's box, from which on it is chosen
-    decode: Work
-    pose: Work
+    decode: tuple[Part, ...]
+    pose: Part
     drawn: Drawn  # from the first of DISTANCES
 
 
@@ -74,7 +76,7 @@ class Counts:
     file_bytes: int
     parameters: int
     splats: int
-    decode: tuple[Part, ...]  # from a window of poses to mesh and channels, one displayed frame each
+    decode: tuple[Part, ...]  # from a window of poses to mesh and channels
     pose: Part  # from these to sorted splats, in every displayed frame that poses
     rest: int  # dispatches of a frame in which only the camera moves
     drawn: tuple[Drawn, ...]
@@ -91,8 +93,8 @@ class Counts:
 
     @property
     def peak(self) -> Work:
-        """Work of the displayed frame that moves most bytes."""
-        return self.pose.work + max((part.work for part in self.decode), key=lambda work: work.bytes)
+        """Work of the displayed frame that moves most bytes, of an avatar that is alone in view."""
+        return self.pose.work + max((added(half) for half in halves(self.decode)), key=lambda work: work.bytes)
 
     @property
     def whole(self) -> Part:
@@ -151,7 +153,7 @@ def as_json(counts: Counts) -> dict[str, Any]:
                 "texels": level.texels,
                 "splats": level.splats,
                 "chosen_from": level.chosen,
-                "bytes": {"decode": level.decode.bytes, "pose": level.pose.bytes},
+                "bytes": {"decode": added(level.decode).bytes, "pose": level.pose.work.bytes},
                 "fragments": {str(level.drawn.distance): level.drawn.fragments},
             }
             for level in counts.levels
@@ -168,6 +170,15 @@ def fragments(device: Device, splats: SortedSplats, camera: Camera) -> Array:
     return draw_image(device, renderer, splats, [camera])[..., 0]
 
 
+def halves(decode: Sequence[T]) -> list[Sequence[T]]:
+    """The parts of a decode by displayed frame, of an avatar that is alone in view."""
+    return [decode[i : i + ALONE] for i in range(0, len(decode), ALONE)]
+
+
+def added(parts: Sequence[Part]) -> Work:
+    return sum((part.work for part in parts), NOTHING)
+
+
 def _part(bound: Sequence[Bound], share: float) -> Part:
     """The work of dispatches where some eye sees this share of the splats."""
     return Part(by_kernel(bound, share=share), len(bound))
@@ -177,19 +188,18 @@ def _level(device: Device, frame: SplatFrame[AvatarFrame], clip: Clip, level: in
     posed, visible, drawn = _draw(device, frame, clip, DISTANCES[0], level)
     (avatar,) = frame.avatars
     share, shown = visible / max(frame.splat_count, 1), avatar.level
-    decode = [_part(bound, share).work for bound in _decode_parts(device, avatar, clip, level)]
     return LevelCounts(
         texels=shown.size,
         splats=shown.splat_count,
         chosen=texel_length(avatar.avatar.avatar) * 2**level * FOCAL / LARGEST_TEXEL if level else 0.0,
-        decode=sum(decode, NOTHING),
-        pose=_part(posed, share).work,
+        decode=tuple(_part(bound, share) for bound in _decode_parts(device, avatar, clip, level)),
+        pose=_part(posed, share),
         drawn=drawn,
     )
 
 
 def _decode_parts(device: Device, avatar: AvatarFrame, clip: Clip, level: int = 0) -> list[tuple[Bound, ...]]:
-    """The dispatches of a decode by displayed frame."""
+    """The dispatches of a decode by part."""
     window = avatar.avatar.avatar.encoding.frames(0)
     avatar.begin(clip.rotations[window], clip.translations[window], level)
     parts = []

@@ -5,16 +5,17 @@
     fragments   the longer of blending them and of their instructions over the rate; these run in blocks of 2 x 2
                 pixels, whole where a triangle touches one
 
-Stages follow one another, without gaps between dispatches. No avatar hides another; all decode in the same frames.
+Stages follow one another, without gaps between dispatches. No avatar hides another. One avatar decodes half in a
+displayed frame, several one part of one decode (mua.avatar.decode_turns).
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
 
-from mua.bench.counts import Counts, Drawn
+from mua.bench.counts import Counts, Drawn, Part, halves
 from mua.bench.devices import ModelDevice
 from mua.bench.work import PROJECT_EYE, Work
 
@@ -31,7 +32,7 @@ class Stages:
     """Milliseconds of a displayed frame."""
 
     decode: float  # decode of all parts
-    part: float  # the longest part of a decode that is spread over displayed frames
+    part: float  # the longest share of a decode in a displayed frame, of one avatar for all
     pose: float  # to sorted splats
     triangles: float
     fragments: float
@@ -79,14 +80,13 @@ def model(device: ModelDevice, counts: Counts, instructions: int) -> list[Modell
 def _stages(
     device: ModelDevice, counts: Counts, seen: Drawn, avatars: int, eyes: int, instructions: int, end: str
 ) -> Stages:
-    parts, pose = [kernels_ms(device, part.kernels, end) for part in counts.decode], dict(counts.pose.kernels)
-    project = pose["SplatProject"]
-    pose["SplatProject"] = replace(project, flops=project.flops + (eyes - 1) * PROJECT_EYE * counts.splats)
+    parts = parts_ms(device, counts.decode, end)
+    shares = [sum(half) for half in halves(parts)] if avatars == 1 else parts
     triangles, fragments = (avatars * eyes * each for each in drawing_ms(device, seen, instructions, end))
     return Stages(
         decode=avatars * sum(parts),
-        part=avatars * max(parts),
-        pose=avatars * kernels_ms(device, pose, end),
+        part=max(shares),
+        pose=avatars * pose_ms(device, counts.pose, counts.splats, eyes, end),
         triangles=triangles,
         fragments=fragments,
         rest=getattr(device.rest, end),
@@ -99,6 +99,18 @@ def drawing_ms(device: ModelDevice, seen: Drawn, instructions: int, end: str) ->
     computed = shaded(seen) * (instructions + FIXED) / (1e12 * device.peak / 2 * getattr(device.shading, end))
     blended = seen.fragments / (1e9 * device.clock * getattr(device.pixels, end))
     return 1e3 * triangles, 1e3 * max(computed, blended)
+
+
+def parts_ms(device: ModelDevice, decode: Sequence[Part], end: str) -> list[float]:
+    return [kernels_ms(device, part.kernels, end) for part in decode]
+
+
+def pose_ms(device: ModelDevice, pose: Part, splats: int, eyes: int, end: str) -> float:
+    """Milliseconds from a decode to sorted splats; what was counted is for one eye."""
+    kernels = dict(pose.kernels)
+    project = kernels["SplatProject"]
+    kernels["SplatProject"] = replace(project, flops=project.flops + (eyes - 1) * PROJECT_EYE * splats)
+    return kernels_ms(device, kernels, end)
 
 
 def kernels_ms(device: ModelDevice, work: Mapping[str, Work], end: str) -> float:

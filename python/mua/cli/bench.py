@@ -127,10 +127,12 @@ def _count(device: "Device", path: Path, output: Path | None) -> None:
 
 def _levels(counted: "Counts") -> Table:
     """What each level of detail costs, and from where on it is chosen."""
+    from mua.bench.counts import added
+
     titles = ("texels", "splats", "from metres", "decode MB", "pose MB", f"fragments at {counted.drawn[0].distance} m")
     table = Table(*titles, box=SIMPLE_HEAD, padding=(0, 0, 0, 1))
     for level in counted.levels:
-        moved = [f"{work.bytes / 1e6:.1f}" for work in (level.decode, level.pose)]
+        moved = [f"{work.bytes / 1e6:.1f}" for work in (added(level.decode), level.pose.work)]
         fragments = f"{level.drawn.fragments:,}"
         table.add_row(str(level.texels), f"{level.splats:,}", f"{level.chosen:.1f}", *moved, fragments)
     return table
@@ -139,19 +141,22 @@ def _levels(counted: "Counts") -> Table:
 def _model(device: "Device", path: Path, name: str, frames: int, output: Path | None) -> None:
     """Print what a frame would take elsewhere, and what it takes here."""
     from mua.bench.counts import count
+    from mua.bench.crowd import SCENES, crowd
     from mua.bench.instructions import fragment_instructions
     from mua.bench.measure import measure
     from mua.bench.model import model
-    from mua.cli.model_table import measured_line, model_json, model_legend, model_table
+    from mua.cli.model_table import crowd_table, measured_line, model_json, model_legend, model_table
 
     chosen, instructions = model_device(name), fragment_instructions()
-    modelled = model(chosen, count(device, path), instructions)
+    counted = count(device, path)
+    modelled = model(chosen, counted, instructions)
+    crowds = [crowd(chosen, counted, instructions, metres) for metres in SCENES]
     measured = measure(device, path, frames=frames, screen=parse_screen(SIZE), eyes=None)
     if output is not None:
-        figures = model_json(name, chosen, instructions, modelled, measured)
+        figures = model_json(name, chosen, instructions, modelled, measured, crowds)
         files.write_bytes(output, json.dumps(figures, indent=2).encode() + b"\n")
     legend = (*model_legend(chosen, instructions), measured_line(measured))
-    for part in (model_table(modelled), *map(Text, legend)):
+    for part in (model_table(modelled), crowd_table(crowds), *map(Text, legend)):
         printer().print(part)
 
 

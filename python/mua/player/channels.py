@@ -5,6 +5,7 @@ Kept a plain list in the order of the kernels, as unity-package/Runtime/ChannelD
 
 from dataclasses import dataclass
 
+from mua.avatar.decode_turns import PARTS
 from mua.gpu import Buffer, Commands, Device
 from mua.gpu.kernel import Kernel
 from mua.kernels.inverse_dwt import BATCH, ROWS, plane_bytes
@@ -16,7 +17,6 @@ LAYER_ROWS, MESH_COLUMNS = 8, 64  # outputs of a group of MlpMatmul and of MlpMa
 LL_PAIRS = 64  # pairs of texels, a word each, of a group of BlendLl
 DETAIL_TILE = 24  # texels along a side of a group of BlendDetail
 COARSE_TILE = 16  # samples along a side that a group of InverseDwt doubles
-PARTS = 2  # parts of a decode that move about as many bytes each: geometry; mesh and appearance
 
 
 @dataclass
@@ -31,7 +31,7 @@ class ChannelSet:
 
 
 class ChannelDecoder:
-    """The buffers between the kernels of a decode, allocated once and reused by every part."""
+    """The buffers between the kernels of a decode, allocated once: parts read what the one before left in them."""
 
     def __init__(self, device: Device, avatar: AvatarBuffers) -> None:
         """Allocate. Errors: InputError where an intermediate buffer is larger than the device can bind or hold."""
@@ -61,12 +61,17 @@ class ChannelDecoder:
         self.textures = tuple(device.buffer(textures[i], name=f"texture {i}") for i in range(2))
 
     def part(self, commands: Commands, channels: ChannelSet, part: int) -> None:
-        """Append one of PARTS; it reads the components in `channels` and writes its results there."""
-        if part == 0:
-            self._branch(commands, self.avatar.geometry, channels.level.geometry, channels, first_row=0)
+        """Append one of PARTS, in their order; they read the components in `channels` and write their results there."""
+        assert part < PARTS
+        branch, shown, first_row = self.avatar.geometry, channels.level.geometry, 0
+        if part >= PARTS // 2:
+            branch, shown, first_row = self.avatar.appearance, channels.level.appearance, ROWS // 2
+        if part % 2 == 0:
+            self._blend(commands, branch, channels)
         else:
+            self._texels(commands, branch, shown, channels, first_row)
+        if part == 1:
             self._coarse(commands, channels)
-            self._branch(commands, self.avatar.appearance, channels.level.appearance, channels, first_row=ROWS // 2)
 
     def _mlp(self, commands: Commands, mlp: tuple[LayerBuffers, ...], components: Buffer) -> Buffer:
         """The MLP's output for the components; valid until the next MLP runs."""
@@ -97,22 +102,30 @@ class ChannelDecoder:
         coefficients = self._mlp(commands, self.avatar.coarse_mlp, channels.components)
         self._layer(commands, kernel, basis, coefficients, channels.mesh, MESH_COLUMNS, relu=False)
 
-    def _branch(
-        self, commands: Commands, branch: BranchBuffers, shown: BranchLevel, channels: ChannelSet, *, first_row: int
-    ) -> None:
-        """Coefficients, LL, level by level as long as there are details; then the valid texels to `channels`."""
+    def _blend(self, commands: Commands, branch: BranchBuffers, channels: ChannelSet) -> None:
+        """Coefficients, LL, and level by level up to the finest details."""
         alpha = self._mlp(commands, branch.mlp, channels.components)
-        levels = len(branch.details)
-        size = self.avatar.avatar.rig.texels.size >> self.avatar.avatar.wavelet.levels
-        self._blend_low(commands, branch, alpha, size, self.textures[levels % 2])
+        size = self._size(0)
+        self._blend_low(commands, branch, alpha, size, self.textures[len(branch.details) % 2])
         offset = branch.channels * branch.rank
         for level, band in enumerate(branch.details):
-            ll, fine = self.textures[(levels - level) % 2], self.textures[(levels - level - 1) % 2]
-            self._blend_band(commands, branch, band, alpha, offset, size)
-            self._synthesise(commands, branch, ll, fine, size)
+            if level > 0:
+                self._synthesise(commands, branch, level - 1)
+            self._blend_band(commands, branch, band, alpha, offset, self._size(level))
             offset += branch.channels * band.rank
-            size *= 2
-        self._upsample(commands, branch, shown, channels, size, first_row)
+
+    def _texels(
+        self, commands: Commands, branch: BranchBuffers, shown: BranchLevel, channels: ChannelSet, first_row: int
+    ) -> None:
+        """The finest level with details; then the valid texels to `channels`."""
+        levels = len(branch.details)
+        if levels > 0:
+            self._synthesise(commands, branch, levels - 1)
+        self._upsample(commands, branch, shown, channels, self._size(levels), first_row)
+
+    def _size(self, level: int) -> int:
+        """Samples along a side of LL, or of what so many levels made of it."""
+        return self.avatar.avatar.rig.texels.size >> self.avatar.avatar.wavelet.levels << level
 
     def _blend_low(self, commands: Commands, branch: BranchBuffers, alpha: Buffer, size: int, blended: Buffer) -> None:
         commands.dispatch(
@@ -144,18 +157,19 @@ class ChannelDecoder:
             alpha_offset=alpha_offset,
         )
 
-    def _synthesise(self, commands: Commands, branch: BranchBuffers, ll: Buffer, fine: Buffer, size: int) -> None:
-        """One level, from planes of `size` to twice that."""
+    def _synthesise(self, commands: Commands, branch: BranchBuffers, level: int) -> None:
+        """One level with its details, to planes of twice the size."""
+        size, finest = self._size(level), len(branch.details)
         tiles = groups(size, COARSE_TILE)
         commands.dispatch(
             self._inverse_dwt,
             (tiles, tiles, branch.channels),
             {
-                "ll": ll,
+                "ll": self.textures[(finest - level) % 2],
                 "details": self.details,
                 "rec_lo": self.avatar.rec_lo,
                 "rec_hi": self.avatar.rec_hi,
-                "fine": fine,
+                "fine": self.textures[(finest - level - 1) % 2],
             },
             channels=branch.channels,
             size=size,

@@ -8,9 +8,10 @@ import numpy as np
 
 from mua import rotation
 from mua.arrays import Array
+from mua.avatar.decode_turns import PARTS
 from mua.gpu import Buffer, Commands, Device
 from mua.player.buffers import AvatarBuffers, LevelBuffers, RigPlaces
-from mua.player.channels import FLOAT, PARTS, TEXEL_CHANNELS, ChannelDecoder, ChannelSet, groups
+from mua.player.channels import FLOAT, TEXEL_CHANNELS, ChannelDecoder, ChannelSet, groups
 from mua.pose.components import read_components
 from mua.pose.descriptor import describe_window
 
@@ -95,7 +96,8 @@ class AvatarFrame:
         self.repose(commands, rotations[0], translations[0], place)
 
     def decode_channels(self, commands: Commands, rotations: Array, translations: Array, level: int = 0) -> None:
-        """Append all parts of a decode, without posing."""
+        """Append all parts of a decode, without posing; one that was begun is given up."""
+        self._decoded = PARTS
         self._begin(self._shown, rotations, translations, level)
         for part in range(PARTS):
             self._decoder.part(commands, self._shown, part)

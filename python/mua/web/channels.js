@@ -32,7 +32,7 @@ const TEXEL_TILE = 16; // texels along a side of a group of UpsampleTexels
 const COARSE_TILE = 16; // samples along a side that a group of InverseDwt doubles
 const [ROWS, BATCH] = [6, 4]; // of texel_channels, and channels of each
 export const TEXEL_CHANNELS = 2 * ROWS * BATCH; // bytes
-export const PARTS = 2; // of a decode, that move about as many bytes: geometry; mesh and appearance
+export const PARTS = 4; // of a decode, which take about as long each
 export const KERNELS = { BlendDetail, MlpMatmul, MlpMatmulTransposed, BlendLl };
 
 /** Groups of `size` that hold `count`. */
@@ -61,7 +61,7 @@ export function kernelsFor(device, { wavelet, geometry, appearance }) {
   return [synthesis(device, wholeWords(wavelet.recLo).length), ...upsamplings.map((one) => upsampler(device, one))];
 }
 
-/** The buffers between the kernels of a decode, sized once and reused by every part; no part reads what another has left in them. */
+/** The buffers between the kernels of a decode, sized once: parts read what the one before left in them. */
 export class ChannelDecoder {
   constructor(/** @type {AvatarBuffers} */ buffers) {
     const { avatar, geometry, appearance, coarseMlp, memory } = buffers;
@@ -82,12 +82,17 @@ export class ChannelDecoder {
     this.textures = [0, 1].map((i) => memory.buffer(Math.max(...branches.map((b) => texture(b, i))), `texture ${i}`));
   }
 
-  /** Append one of PARTS: from the components in `channels` to this part's channels. */
-  part(/** @type {GPUComputePassEncoder} */ pass, /** @type {ChannelSet} */ channels, /** @type {number} */ part) {
+  /** Append one of PARTS, in their order: from the components in `channels` to their results there. @param {GPUComputePassEncoder} pass @param {ChannelSet} channels @param {number} part */
+  part(pass, channels, part) {
     const { geometry, appearance } = this.buffers;
-    if (part > 0) this.coarse(pass, channels);
-    if (part === 0) this.branch(pass, geometry, channels.level.geometry, channels, 0);
-    else this.branch(pass, appearance, channels.level.appearance, channels, ROWS / 2);
+    const { level } = channels;
+    if (part === 0) this.blend(pass, geometry, channels);
+    if (part === 1) {
+      this.texels(pass, geometry, level.geometry, channels, 0);
+      this.coarse(pass, channels);
+    }
+    if (part === 2) this.blend(pass, appearance, channels);
+    if (part === 3) this.texels(pass, appearance, level.appearance, channels, ROWS / 2);
   }
 
   /** Output of the MLP for the components; the next MLP overwrites it. */
@@ -127,27 +132,33 @@ export class ChannelDecoder {
     this.layer(pass, this.kernels.MlpMatmulTransposed, mesh, { x, y: channels.mesh }, MESH_COLUMNS, false);
   }
 
+  /** Coefficients, LL, and level by level up to the finest details. @param {GPUComputePassEncoder} pass @param {Branch} branch @param {ChannelSet} channels */
+  blend(pass, branch, channels) {
+    const alpha = this.mlp(pass, branch.mlp, channels.components);
+    this.blendLow(pass, branch, alpha, this.size(0), this.textures[branch.details.length % 2]);
+    let offset = branch.channels * branch.rank;
+    branch.details.forEach((band, level) => {
+      if (level > 0) this.synthesise(pass, branch, level - 1);
+      this.blendBand(pass, branch, band, alpha, offset, this.size(level));
+      offset += branch.channels * band.rank;
+    });
+  }
+
   /**
-   * Coefficients, LL, level by level as long as there are details; then the valid texels to `channels`.
+   * The finest level with details; then the valid texels to `channels`.
    * @param {GPUComputePassEncoder} pass @param {Branch} branch @param {BranchLevel} shown @param {ChannelSet} channels
    * @param {number} firstRow
    */
-  branch(pass, branch, shown, channels, firstRow) {
-    const alpha = this.mlp(pass, branch.mlp, channels.components);
-    const { texels, wavelet } = this.buffers.avatar;
-    const { textures } = this;
+  texels(pass, branch, shown, channels, firstRow) {
     const levels = branch.details.length;
-    let size = texels.size / 2 ** wavelet.levels;
-    this.blendLow(pass, branch, alpha, size, textures[levels % 2]);
-    let offset = branch.channels * branch.rank;
-    branch.details.forEach((band, level) => {
-      const [ll, fine] = [textures[(levels - level) % 2], textures[(levels - level - 1) % 2]];
-      this.blendBand(pass, branch, band, alpha, offset, size);
-      this.synthesise(pass, branch, ll, fine, size);
-      offset += branch.channels * band.rank;
-      size *= 2;
-    });
-    this.upsample(pass, branch, shown, channels, size, firstRow);
+    if (levels > 0) this.synthesise(pass, branch, levels - 1);
+    this.upsample(pass, branch, shown, channels, this.size(levels), firstRow);
+  }
+
+  /** Samples along a side of LL, or of what so many levels made of it. */
+  size(/** @type {number} */ level) {
+    const { texels, wavelet } = this.buffers.avatar;
+    return texels.size / 2 ** (wavelet.levels - level);
   }
 
   /** @param {GPUComputePassEncoder} pass @param {Branch} branch @param {GPUBuffer} alpha @param {number} size @param {GPUBuffer} blended */
@@ -186,9 +197,11 @@ export class ChannelDecoder {
     );
   }
 
-  /** One level, from planes of `size` to twice that. @param {GPUComputePassEncoder} pass @param {Branch} branch @param {GPUBuffer} ll @param {GPUBuffer} fine @param {number} size */
-  synthesise(pass, branch, ll, fine, size) {
+  /** One level with its details, to planes of twice the size. @param {GPUComputePassEncoder} pass @param {Branch} branch @param {number} level */
+  synthesise(pass, branch, level) {
     const { recLo: rec_lo, recHi: rec_hi, taps } = this.buffers;
+    const [size, finest] = [this.size(level), branch.details.length];
+    const [ll, fine] = [0, 1].map((done) => this.textures[(finest - level - done) % 2]);
     const tiles = groups(size, COARSE_TILE);
     this.kernels.InverseDwt.dispatch(
       pass,

@@ -63,11 +63,12 @@ export class AvatarFrame {
   }
 
   /**
-   * Append all parts of a decode, whose channels are shown from then on.
+   * Append all parts of a decode, whose channels are shown from then on; one that was begun is given up.
    * The components are written to the device at once: submit before the next decode.
    * @param {GPUComputePassEncoder} pass @param {Pose[]} window newest first @param {number} level of detail, 0 being the finest
    */
   decode(pass, window, level) {
+    this.decoded = PARTS;
     this.take(this.shown, window, level);
     for (let part = 0; part < PARTS; part++) this.decoder.part(pass, this.shown, part);
   }
