@@ -24,6 +24,7 @@ class Fake {
   speed = 1;
   level = "auto";
   budget = null;
+  frameBudget = null;
   follow = false;
   stereo = false;
   vr = false;

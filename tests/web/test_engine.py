@@ -274,16 +274,38 @@ def test_a_decode_that_is_spread_shows_what_one_at_once_shows(opened: Open, smal
     at_once = screenshot(page)
     show(page, SPLATS, 3, rate)
     page.evaluate("""(() => {
-      const posed = player.posed().map((one) => ({ ...one, following: 4 }));
+      const posed = player.posed().map((one) => ({ ...one, following: 4, spread: true }));
       for (const turn of [0, 1, 2]) turn ? player.renderer.lookAhead(posed) : player.renderer.draw(posed, player);
     })()""")
     frame = "player.entries[0].slot.frame"
-    assert page.evaluate(f"[{frame}.partsLeft, player.entries[0].slot.schedule.coming.frame]") == [0, 4]
+    state = "player.renderer.decodes.schedule.states.get(player.entries[0].slot)"
+    assert page.evaluate(f"[{frame}.partsLeft, {state}.coming.frame]") == [0, 4]
     show(page, SPLATS, 4, rate)
     before = page.evaluate(f"(globalThis.made = {frame}.hidden, true)")
     np.testing.assert_array_equal(screenshot(page), at_once)
     assert before
     assert page.evaluate(f"{frame}.shown === made"), "it was not decoded anew"
+
+
+def test_avatars_that_take_turns_show_what_one_alone_shows(opened: Open, small: Path) -> None:
+    """All of them play on until each has had its turn, then rest at that frame: bit for bit, without another decode."""
+    other = synthetic_avatar(3)
+    page, rate = opened(a=small.read_bytes(), b=encode(other, storage="f32")), read(small).encoding.rate
+    assert load(page) == load(page, '"b.muaavatar"') == ""
+    show(page, SPLATS, 4, rate)
+    at_once = screenshot(page)
+    show(page, SPLATS, 3, rate)
+    page.evaluate("""(() => {
+      const posed = player.posed().map((one) => ({ ...one, following: 4, spread: true }));
+      for (let turn = 0; turn < 10; turn++) player.renderer.lookAhead(posed);
+      globalThis.made = player.entries.map(({ slot }) => slot.frame.hidden);
+    })()""")
+    assert page.evaluate("player.entries.map(({ slot }) => slot.frame.partsLeft)") == [0, 0]
+    page.evaluate("player.renderer.draw(player.posed().map((one) => ({ ...one, frame: 4, following: 5, spread: true })), player)")
+    assert page.evaluate("player.entries.map(({ slot }, i) => slot.frame.shown === made[i])") == [True, True]
+    show(page, SPLATS, 4, rate)
+    np.testing.assert_array_equal(screenshot(page), at_once)
+    assert page.evaluate("player.entries.map(({ slot }, i) => slot.frame.shown === made[i])") == [True, True]
 
 
 def test_a_handle_says_what_the_file_holds(opened: Open, small: Path) -> None:
@@ -309,7 +331,7 @@ def test_a_handle_says_how_far_outside_of_training_the_pose_is(opened: Open, sma
         expected = [avatar.decode(avatar.clips[0], frame).outside for avatar in (one, other)]
         assert found[-1] == pytest.approx(expected, abs=SHARE)
     assert len({share for pair in found for share in pair}) == 4
-    page.evaluate("player.renderer.lookAhead(player.posed().map((one) => ({ ...one, following: 3 })))")
+    page.evaluate("player.renderer.lookAhead(player.posed().map((one) => ({ ...one, following: 3, spread: true })))")
     assert page.evaluate("player.avatars.map((one) => one.outsideTraining)") == found[1], "of what is shown"
     assert page.evaluate("(avatar.remove(), avatar.outsideTraining)") == 0
 

@@ -18,6 +18,7 @@ GIVEN = {
     "show": "template",
     "level": 384,
     "budget": 5000,
+    "framebudget": 11.1,
     "stereo": True,
     "follow": True,
     "controls": True,
@@ -29,9 +30,10 @@ GIVEN = {
     "alt": "A dancer",
 }
 PLAYED = (
-    "[fake.clip, fake.speed, fake.show.template, fake.show.splats, fake.level, fake.budget, fake.stereo, fake.follow]"
+    "[fake.clip, fake.speed, fake.show.template, fake.show.splats, fake.level, fake.budget, fake.frameBudget, "
+    "fake.stereo, fake.follow]"
 )
-WANTED = ["wave", 0.5, True, False, 384, 5000, True, True]
+WANTED = ["wave", 0.5, True, False, 384, 5000, 11.1, True, True]
 
 
 @pytest.mark.parametrize("known", [False, True], ids=["before the module", "after it"])

@@ -16,6 +16,7 @@ export const FOLLOWED = [
   "show",
   "level",
   "budget",
+  "framebudget",
   "stereo",
   "follow",
   "azimuth",
@@ -35,6 +36,8 @@ const ASKED = {
       "auto";
   },
   budget: (player, value) => (player.budget = asked("budget", value, "a number of splats", numberIn(value))),
+  framebudget: (player, value) =>
+    (player.frameBudget = asked("framebudget", value, "a number of milliseconds", numberIn(value))),
   stereo: (player, value) => (player.stereo = value !== null),
   follow: (player, value) => (player.follow = value !== null),
   show(player, value) {

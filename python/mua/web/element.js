@@ -10,6 +10,7 @@
 //   show        what is drawn, separated by commas: splats, geometry, template, skeleton, shadow
 //   level       of detail: auto (by the distance, if left out), full, or texels along a side of the texture
 //   budget      most splats of all avatars together where level is auto
+//   framebudget milliseconds that a picture may take: where it takes longer, fewer splats are shown
 //   stereo      draws a left and a right eye side by side
 //   follow      lets the camera go with the figure
 //   azimuth     degrees that the camera stands round the figure, towards its left; 0 is its front

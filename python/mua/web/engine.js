@@ -44,6 +44,8 @@ export class Engine {
     this.level = "auto";
     /** @type {number | null} */
     this.budget = null;
+    /** @type {number | null} */
+    this.frameBudget = null;
     this.follow = false;
     this.stereo = false;
     this.playback = new Playback(() => this.entries[0]?.handle.clips ?? []);
@@ -235,8 +237,8 @@ export class Engine {
   get look() {
     const followed = this.followed();
     const target = /** @type {[number, number, number]} */ (this.camera.target.map((at, i) => at + followed[i]));
-    const { show, level, budget, stereo } = this;
-    return { camera: { ...this.camera, target }, stereo, show, level, budget };
+    const { show, level, budget, frameBudget, stereo } = this;
+    return { camera: { ...this.camera, target }, stereo, show, level, budget, frameBudget };
   }
 
   /** @returns {[number, number]} */
@@ -253,7 +255,8 @@ export class Engine {
       const frame = playback.frameOf(avatar);
       const following = exact ? frame : playback.followingOf(avatar);
       const ground = this.show.shadow ? groundOf(entry, playback) : 0;
-      return { slot, clip: playback.clipOf(avatar), frame, following, place: [...handle.place], ground };
+      const spread = !exact && playback.playing;
+      return { slot, clip: playback.clipOf(avatar), frame, following, spread, place: [...handle.place], ground };
     });
   }
 
@@ -300,6 +303,7 @@ export class Engine {
     this.request = requestAnimationFrame((next) => this.step(next));
     if (this.vr) return;
     this.playback.advance(now);
+    this.renderer?.displays(now);
     const frames = this.entries.map(({ avatar, handle }) => {
       return [handle.name, this.playback.clipOf(avatar).name, this.playback.frameOf(avatar), handle.place];
     });

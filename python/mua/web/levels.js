@@ -21,12 +21,16 @@ export class Levels {
     this.shown = 0;
   }
 
-  /** What the eyes see of it. @param {import("./skeleton.js").Pose} pose @param {number[]} place @param {import("./camera.js").Camera[]} cameras */
-  seen(pose, place, cameras) {
+  /** Its box in the world, metres. @param {import("./skeleton.js").Pose} pose @param {number[]} place */
+  box(pose, place) {
     const { skeleton, bounds } = this.avatar;
     const root = world(skeleton, pose).places.subarray(3 * skeleton.root);
-    const box = Array.from(bounds, (value, i) => value + root[i % 3] + place[i % 3]);
-    return { ...texelPixels(this.length, box, cameras), counts: this.counts, shown: this.shown };
+    return Array.from(bounds, (value, i) => value + root[i % 3] + place[i % 3]);
+  }
+
+  /** What the eyes see of it. @param {import("./skeleton.js").Pose} pose @param {number[]} place @param {import("./camera.js").Camera[]} cameras */
+  seen(pose, place, cameras) {
+    return { ...texelPixels(this.length, this.box(pose, place), cameras), counts: this.counts, shown: this.shown };
   }
 }
 

@@ -77,6 +77,8 @@ export { AvatarError, offersVR };
  * @property {Show} show may be changed in place
  * @property {Level} level of detail; "auto" by default
  * @property {number | null} budget splats of all avatars together where the level is "auto", for the nearest first; null: no limit
+ * @property {number | null} frameBudget milliseconds that the graphics device may work on a picture, or that pass between two where it keeps no
+ *   time: where it takes longer, fewer splats are shown; null, the default: no splats are left out for it
  * @property {boolean} stereo whether a left and a right eye share the width of the picture; not by default
  * @property {boolean} follow whether the camera goes with the first avatar along the ground; not by default
  * @property {() => Promise<void>} draw one picture now, at the canvas' size; resolves when it is drawn

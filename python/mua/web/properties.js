@@ -5,7 +5,7 @@ import { numberOf } from "./attributes.js";
 /** Names of the properties, each that of its attribute. */
 export const PROPERTIES = /** @type {const} */ ([
   ...["src", "clip", "autoplay", "controls", "poster", "alt", "speed", "show", "level", "budget"],
-  ...["stereo", "follow", "azimuth", "elevation", "orbit"],
+  ...["framebudget", "stereo", "follow", "azimuth", "elevation", "orbit"],
 ]);
 
 const HTMLElementOrNone = /** @type {typeof HTMLElement} */ (globalThis.HTMLElement ?? class {});
@@ -81,6 +81,15 @@ export class Attributed extends HTMLElementOrNone {
 
   set budget(value) {
     this.reflect("budget", value);
+  }
+
+  /** Milliseconds of a picture, within which splats are left out; null: none are. @type {number | null} */
+  get framebudget() {
+    return this.hasAttribute("framebudget") ? numberOf(this, "framebudget", Infinity) : null;
+  }
+
+  set framebudget(value) {
+    this.reflect("framebudget", value);
   }
 
   /** Degrees that the camera stands round the figure. @type {number} */

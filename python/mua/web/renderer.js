@@ -2,30 +2,31 @@
 // left behind and another one made.
 
 import { AvatarBuffers } from "./buffers.js";
-import { camerasOf } from "./camera.js";
+import { camerasOf, sees } from "./camera.js";
 import { KERNELS as DECODING, kernelsFor } from "./channels.js";
-import { window } from "./clip.js";
+import { sample, window } from "./clip.js";
+import { Decodes, rankOf } from "./decodes.js";
 import { Memory } from "./device.js";
 import { readOrder, writeOrder } from "./early.js";
 import { AvatarError } from "./error.js";
 import { AvatarFrame } from "./frame.js";
+import { MILLISECONDS } from "./frame_budget.js";
 import { areCompiled, kernelsOf } from "./kernel.js";
 import { Levels, levelsOf } from "./levels.js";
 import { Overlays } from "./overlays.js";
 import { readPicture } from "./picture.js";
 import { COLOR, DEPTH, Scene } from "./scene.js";
-import { DecodeSchedule } from "./schedule.js";
 import { giveBack, takeDevice } from "./shared.js";
-import { PROJECTING, SORTING, SplatFrame } from "./splats.js";
+import { PROJECTING, reach, SORTING, SplatFrame } from "./splats.js";
 import { Timing } from "./timing.js";
 import { BlendVertices } from "./wgsl/dq_skinning.js";
 
 /** @typedef {import("./format/read.js").Avatar} Avatar */
 /** @typedef {import("./format/read.js").Clip} Clip */
-/** @typedef {{memory: Memory, frame: AvatarFrame, overlays: Overlays, schedule: DecodeSchedule, levels: Levels, standing: string}} Slot an avatar on the device, and where it stands */
-/** @typedef {{slot: Slot, clip: Clip, frame: number, following: number, place: number[], ground: number}} Posed what a picture shows of one */
+/** @typedef {{memory: Memory, frame: AvatarFrame, overlays: Overlays, levels: Levels, decoded: import("./skeleton.js").Pose | null, standing: string}} Slot an avatar on the device, the newest pose of its last decode, and how it stands */
+/** @typedef {{slot: Slot, clip: Clip, frame: number, following: number, spread: boolean, place: number[], ground: number}} Posed what a picture shows of one, and whether a decode may come later than its frame */
 /** @typedef {{compile: () => Promise<void>}} Compiled */
-/** @typedef {{camera: import("./player.js").CameraState, stereo: boolean, show: import("./player.js").Show, level: import("./player.js").Level, budget: number | null}} Look */
+/** @typedef {{camera: import("./player.js").CameraState, stereo: boolean, show: import("./player.js").Show, level: import("./player.js").Level, budget: number | null, frameBudget: number | null}} Look */
 
 export class Renderer {
   /** @returns {Promise<Renderer>} */
@@ -54,7 +55,10 @@ export class Renderer {
     this.context = context;
     context.configure({ device: device.gpu, format: COLOR, alphaMode: "premultiplied" });
     this.scene = new Scene(device, options.background ?? [0, 0, 0, 0]);
-    this.timing = new Timing(device);
+    this.decodes = new Decodes();
+    this.timing = new Timing(device, (milliseconds) => this.decodes.time(milliseconds));
+    /** @type {import("./camera.js").Camera[]} */
+    this.cameras = []; // of the last picture
     this.shared = new Memory(device); // the splats of all avatars
     this.decoding = compiled(kernelsOf(device, { ...DECODING, BlendVertices }));
     // What comes later is compiled later: the first frame is decoded meanwhile.
@@ -97,7 +101,7 @@ export class Renderer {
     try {
       const frame = new AvatarFrame(new AvatarBuffers(memory, avatar));
       const overlays = new Overlays(memory, frame, { color: COLOR, depth: DEPTH });
-      slot = { memory, frame, overlays, schedule: new DecodeSchedule(frame), levels: new Levels(avatar), standing: "" };
+      slot = { memory, frame, overlays, levels: new Levels(avatar), decoded: null, standing: "" };
       this.rearrange([...this.slots, slot]);
     } finally {
       const lacking = await gpu.popErrorScope();
@@ -114,11 +118,16 @@ export class Renderer {
   /** Put an avatar that was added into the place of another one, which goes. */
   replace(/** @type {Slot} */ old, /** @type {Slot} */ slot) {
     this.rearrange(this.slots.filter((one) => one !== slot).map((one) => (one === old ? slot : one)));
-    old.memory.free();
+    this.free(old);
   }
 
   remove(/** @type {Slot} */ slot) {
     this.rearrange(this.slots.filter((one) => one !== slot));
+    this.free(slot);
+  }
+
+  free(/** @type {Slot} */ slot) {
+    this.decodes.schedule.forget(slot);
     slot.memory.free();
   }
 
@@ -205,24 +214,26 @@ export class Renderer {
     then();
   }
 
-  /** Decode a part of what comes next, where the picture stays. */
-  lookAhead(/** @type {Posed[]} */ posed) {
-    this.compute((pass) => {
-      for (const one of posed) {
-        const { schedule, levels } = one.slot;
-        if (schedule.shown && schedule.shown.frame === one.frame)
-          schedule.record(pass, asked(one, levels.shown), windowOf(one));
-      }
-    });
+  /** Take the time of a frame of the display or the headset, milliseconds, where the device keeps none. */
+  displays(/** @type {number} */ now) {
+    if (!this.timing.queries) this.decodes.display(now);
   }
 
-  /** Submit a pass of its own. */
-  compute(/** @type {(pass: GPUComputePassEncoder) => void} */ record) {
+  /** Decode a part of what comes next, where the picture stays. */
+  lookAhead(/** @type {Posed[]} */ posed) {
+    const levels = posed.map(({ slot }) => slot.levels.shown);
+    const changed = this.compute((pass) => this.decode(pass, posed, levels, this.cameras));
+    for (const slot of changed) slot.standing = ""; // which the next picture poses
+  }
+
+  /** Submit a pass of its own. @template Made @param {(pass: GPUComputePassEncoder) => Made} record @returns {Made} */
+  compute(record) {
     const encoder = this.device.gpu.createCommandEncoder();
     const pass = encoder.beginComputePass();
-    record(pass);
+    const made = record(pass);
     pass.end();
     this.send(encoder);
+    return made;
   }
 
   send(/** @type {GPUCommandEncoder} */ encoder) {
@@ -230,20 +241,53 @@ export class Renderer {
     this.device.gpu.queue.submit([encoder.finish()]);
   }
 
-  /** Bring what is due to the pose in which it is shown, and decode a part of what comes next. @param {GPUComputePassEncoder} pass @param {Posed[]} posed @param {Look} look @param {import("./camera.js").Camera[]} cameras */
+  /** Decode what is due, or a part of what comes next, and bring it to the pose in which it is shown. @param {GPUComputePassEncoder} pass @param {Posed[]} posed @param {Look} look @param {import("./camera.js").Camera[]} cameras */
   pose(pass, posed, look, cameras) {
-    const windows = posed.map(windowOf);
-    const poses = posed.map((one, i) => windows[i]({ clip: one.clip.name, frame: one.frame })[0]);
+    const poses = posed.map(poseOf);
     const standing = posed.map(({ slot, place }, i) => ({ levels: slot.levels, pose: poses[i], place }));
-    const levels = look.show.geometry ? posed.map(() => 0) : levelsOf(standing, look, cameras);
+    const levels = look.show.geometry ? posed.map(() => 0) : levelsOf(standing, this.limited(look), cameras);
+    this.cameras = cameras;
+    const changed = this.decode(pass, posed, levels, cameras);
     for (const [i, one] of posed.entries()) {
-      const { schedule, frame, overlays, standing } = one.slot;
-      const changed = schedule.record(pass, asked(one, levels[i]), windows[i]);
-      one.slot.standing = [...one.place, one.ground].join();
-      if (!changed && one.slot.standing === standing) continue;
-      frame.repose(pass, poses[i], one.place);
-      overlays.pose(one.ground + one.place[1]);
+      const { slot, clip, frame, place, ground } = one;
+      const { standing } = slot;
+      slot.standing = [clip.name, frame, ...place, ground].join();
+      if (!changed.has(slot) && slot.standing === standing) continue;
+      slot.frame.repose(pass, poses[i], place);
+      slot.overlays.pose(ground + place[1]);
     }
+    const shown = posed.reduce((sum, { slot }) => sum + slot.frame.splatCount, 0);
+    const finest = posed.reduce((sum, { slot }) => sum + slot.levels.counts[0], 0);
+    const limits = look.frameBudget !== null && look.level === "auto";
+    const most = look.frameBudget ?? MILLISECONDS;
+    this.decodes.measured = { most, avatars: posed.length, splats: limits ? [shown, finest] : null };
+  }
+
+  /** Append what a displayed frame decodes of the avatars in view; those of which other channels are shown. @param {GPUComputePassEncoder} pass @param {Posed[]} posed @param {number[]} levels @param {import("./camera.js").Camera[]} cameras */
+  decode(pass, posed, levels, cameras) {
+    const asked = posed.map((one, i) => {
+      const { slot, clip, frame, following, place } = one;
+      const [due, next] = [frame, following].map((at) => ({ clip: clip.name, frame: at }));
+      const ask = { due, following: next, level: levels[i], rank: 0, spread: one.spread && slot.decoded !== null };
+      let seen = true;
+      if (posed.length > 1 && ask.spread) {
+        const box = slot.levels.box(poseOf(one), place);
+        seen = cameras.some((camera) => sees(camera, reach(box)));
+        ask.rank = rankOf(slot, poseOf(one), box, cameras);
+      }
+      return { slot, ask, seen, window: windowOf(one) };
+    });
+    return this.decodes.record(
+      pass,
+      asked.filter(({ seen }) => seen),
+    );
+  }
+
+  /** A look with the splats that the device has been found to have time for. @param {Look} look @returns {Look} */
+  limited(look) {
+    const { splats } = this.decodes.budget;
+    if (look.frameBudget === null || splats === null) return look;
+    return { ...look, budget: Math.min(look.budget ?? Infinity, splats) };
   }
 
   get destroyed() {
@@ -270,11 +314,13 @@ function compiled(/** @type {Record<string, Compiled> | Compiled[]} */ parts) {
   return Promise.all(Object.values(parts).map((one) => one.compile()));
 }
 
-function asked(/** @type {Posed} */ { clip, frame, following }, /** @type {number} */ level) {
-  return { due: { clip: clip.name, frame }, following: { clip: clip.name, frame: following }, level };
+/** The pose in which an avatar is shown. @returns {import("./skeleton.js").Pose} */
+function poseOf(/** @type {Posed} */ { slot, clip, frame }) {
+  const { skeleton, encoding } = slot.frame.buffers.avatar;
+  return sample(skeleton, clip, frame, encoding.rate);
 }
 
-/** The poses that end at a moment of what is shown. @returns {import("./schedule.js").Window} */
+/** The poses that end at a moment of what is shown. @returns {import("./decodes.js").Window} */
 function windowOf(/** @type {Posed} */ { slot, clip }) {
   const { skeleton, encoding } = slot.frame.buffers.avatar;
   return ({ frame }) => window(skeleton, clip, frame, encoding);

@@ -73,3 +73,13 @@ export function dualTransform(/** @type {Numbers} */ d, /** @type {Numbers} */ p
   const moved = multiply(d, conjugate(d, i), i + 4, 0);
   return rotate(d, p, i, j).map((value, axis) => value + 2 * moved[axis + 1]);
 }
+
+/** Largest angle between the rotations [J, 4] of two poses, radians. @param {ArrayLike<number>} a @param {ArrayLike<number>} b */
+export function largestTurn(a, b) {
+  let least = 1; // cosine of half the angle
+  for (let at = 0; at < a.length; at += 4) {
+    const cosine = a[at] * b[at] + a[at + 1] * b[at + 1] + a[at + 2] * b[at + 2] + a[at + 3] * b[at + 3];
+    least = Math.min(least, Math.abs(cosine));
+  }
+  return 2 * Math.acos(least);
+}

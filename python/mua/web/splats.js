@@ -25,7 +25,7 @@ export const SORTING = { ScatterDigits, CountDigits, ScanDigits };
 const even = (/** @type {number} */ count) => count + (count % 2);
 
 /** The box that splats may reach: half a diagonal beyond, as far as SplatProject keys their depth. */
-function reach(/** @type {number[]} */ box) {
+export function reach(/** @type {number[]} */ box) {
   const spare = Math.hypot(...[0, 1, 2].map((axis) => box[3 + axis] - box[axis])) / 2;
   return box.map((value, i) => value + (i < 3 ? -spare : spare));
 }

@@ -6,7 +6,9 @@ const SMOOTHING = 0.1; // share of the newest picture
 
 /** Writes begin and end of each stage's pass, and reads them when the picture is done. */
 export class Timing {
-  constructor(/** @type {import("./device.js").Device} */ device) {
+  /** @param {import("./device.js").Device} device @param {(milliseconds: number) => void} [taken] told of all stages of a picture together */
+  constructor(device, taken = () => {}) {
+    this.taken = taken;
     /** @type {Record<string, number>} */
     this.milliseconds = {};
     this.busy = false; // what was written last is still being read
@@ -48,10 +50,13 @@ export class Timing {
   }
 
   take(/** @type {BigInt64Array} */ times) {
+    let all = 0;
     STAGES.forEach((stage, i) => {
-      const newest = Number(times[2 * i + 1] - times[2 * i]) / 1e6;
+      const newest = Math.max(Number(times[2 * i + 1] - times[2 * i]) / 1e6, 0);
       const before = this.milliseconds[stage] ?? newest;
-      this.milliseconds[stage] = before + SMOOTHING * (Math.max(newest, 0) - before);
+      this.milliseconds[stage] = before + SMOOTHING * (newest - before);
+      all += newest;
     });
+    this.taken(all);
   }
 }

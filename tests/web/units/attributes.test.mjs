@@ -50,6 +50,14 @@ for (const [name, value, said] of [
     assert.equal(player[name], 3);
   });
 
+test("framebudget asks for the milliseconds of a picture", () => {
+  assert.equal(asked("framebudget", "11.1").frameBudget, 11.1);
+  assert.equal(asked("framebudget", null).frameBudget, null);
+  assert.throws(() => asked("framebudget", "fast"), {
+    message: 'framebudget="fast": expected a number of milliseconds.',
+  });
+});
+
 test("without show, what is shown stays", () => {
   const player = { ...fakePlayer(), show: { splats: true, template: true } };
   assert.deepEqual(asked("show", null, player).show, { splats: true, template: true });

@@ -39,6 +39,8 @@ class FakeRenderer {
 
   replace() {}
 
+  displays() {}
+
   async compile() {}
 
   draw(posed, look) {
@@ -88,6 +90,7 @@ test("a picture that would be the same is not drawn again; what changes in it is
     () => (engine.camera.azimuth = 1),
     () => (engine.level = "full"),
     () => (engine.budget = 5),
+    () => (engine.frameBudget = 5),
     () => (engine.stereo = true),
     () => (engine.canvas.width = 100),
   ]) {

@@ -3,8 +3,11 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
+import { camerasOf } from "../../../python/mua/web/camera.js";
+import { Decodes } from "../../../python/mua/web/decodes.js";
 import { Device } from "../../../python/mua/web/device.js";
 import { read } from "../../../python/mua/web/format/read.js";
+import { Levels } from "../../../python/mua/web/levels.js";
 import { Renderer } from "../../../python/mua/web/renderer.js";
 import { fakeGpu } from "./gpu.mjs";
 
@@ -13,6 +16,7 @@ const LOOK = {
   stereo: false,
   level: "full",
   budget: null,
+  frameBudget: null,
 };
 const SKELETON = { names: ["root"], parents: [-1], root: 0, bindTranslations: new Float32Array(3), translated: [] };
 const CLIP = {
@@ -24,18 +28,31 @@ const CLIP = {
   translations: [],
 };
 
-/** An avatar on the device that notes what is done with it; `changes` says whether each decode shows other channels. */
-function slotOf({ changes = [], level = 0 } = {}) {
+/** An avatar on the device that notes what is done with it. */
+function slotOf({ level = 0 } = {}) {
   const done = [];
-  const avatar = { skeleton: SKELETON, encoding: { rate: 30, window: 1 }, bounds: [-1, 0, -1, 1, 2, 1] };
+  const avatar = {
+    skeleton: SKELETON,
+    encoding: { rate: 30, window: 1 },
+    bounds: [-1, 0, -1, 1, 2, 1],
+    texels: { size: 64, texels: [0, 1], length: 0.01, levels: [{ texels: [0] }] },
+  };
   const slot = {
     done,
     freed: 0,
     memory: { free: () => (slot.freed += 1) },
-    frame: { buffers: { avatar }, repose: (_, __, place) => done.push(`posed at ${place}`) },
+    frame: {
+      buffers: { avatar },
+      splatCount: 2,
+      decode: (_, __, at) => done.push(`whole at ${at}`),
+      begin: (_, at) => done.push(`begin at ${at}`),
+      advance: () => done.push("part"),
+      show: () => done.push("show"),
+      repose: (_, __, place) => done.push(`posed at ${place}`),
+    },
     overlays: { pose: (ground) => done.push(`ground ${ground}`) },
-    levels: { shown: level, sizes: [64, 32] },
-    schedule: { shown: null, record: (_, asked) => (done.push(asked), changes.shift() ?? false) },
+    levels: Object.assign(new Levels(avatar), { shown: level }),
+    decoded: null,
     standing: "",
   };
   return slot;
@@ -45,25 +62,36 @@ const posedOf = (slot, more = {}) => ({
   slot,
   clip: CLIP,
   frame: 0,
-  following: 1,
+  following: 0,
+  spread: false,
   place: [0, 0, 0],
   ground: 0,
   ...more,
 });
-const pose = (posed, look = {}) => Renderer.prototype.pose.call({}, "pass", posed, { ...LOOK, show: {}, ...look }, []);
-const moves = (slot) => slot.done.splice(0).filter((each) => typeof each === "string");
 
-test("an avatar is posed where it was decoded anew or stands elsewhere, and rests otherwise", () => {
-  const slot = slotOf({ changes: [true, false, true] });
+/** A renderer, without a device, that draws pictures one after the other. */
+function drawing() {
+  const renderer = Object.assign(Object.create(Renderer.prototype), { decodes: new Decodes(), cameras: [] });
+  renderer.compute = (record) => record("pass");
+  const cameras = camerasOf(LOOK.camera, false, [100, 100]);
+  const pose = (posed, look = {}) => renderer.pose("pass", posed, { ...LOOK, show: {}, ...look }, cameras);
+  return { renderer, pose };
+}
+
+const moves = (slot) => slot.done.splice(0).filter((each) => /posed|ground/.test(each));
+
+test("an avatar is posed where it plays on or stands elsewhere, and rests otherwise", () => {
+  const slot = slotOf();
+  const { pose } = drawing();
   pose([posedOf(slot)]);
   assert.deepEqual(moves(slot), ["posed at 0,0,0", "ground 0"]);
   pose([posedOf(slot)]);
   assert.deepEqual(moves(slot), []);
-  pose([posedOf(slot)]);
+  pose([posedOf(slot, { frame: 1, following: 1 })]);
   assert.equal(moves(slot).length, 2);
-  pose([posedOf(slot, { place: [0, 1, 2] })]);
+  pose([posedOf(slot, { frame: 1, following: 1, place: [0, 1, 2] })]);
   assert.deepEqual(moves(slot), ["posed at 0,1,2", "ground 1"]);
-  pose([posedOf(slot, { place: [0, 1, 2], ground: 0.5 })]);
+  pose([posedOf(slot, { frame: 1, following: 1, place: [0, 1, 2], ground: 0.5 })]);
   assert.deepEqual(moves(slot), ["posed at 0,1,2", "ground 1.5"]);
 });
 
@@ -74,27 +102,87 @@ test("each avatar is decoded at the level that is asked for, the finest where it
     [{ level: 32, show: { geometry: true } }, 0],
   ]) {
     const slot = slotOf();
-    pose([posedOf(slot)], look);
-    assert.deepEqual(slot.done[0], {
-      due: { clip: "walk", frame: 0 },
-      following: { clip: "walk", frame: 1 },
-      level: wanted,
-    });
+    drawing().pose([posedOf(slot)], look);
+    assert.equal(slot.done[0], `whole at ${wanted}`);
   }
 });
 
-test("what comes next is decoded at the level that is shown, once its frame is", () => {
-  const [shown, other, none] = [slotOf({ level: 1 }), slotOf(), slotOf()];
-  shown.schedule.shown = { clip: "walk", frame: 3 };
-  other.schedule.shown = { clip: "walk", frame: 2 };
-  const posed = [shown, other, none].map((slot) => posedOf(slot, { frame: 3, following: 4 }));
-  Renderer.prototype.lookAhead.call({ compute: (record) => record("pass") }, posed);
-  assert.deepEqual([shown.done[0].level, other.done, none.done], [1, [], []]);
+test("what comes next is decoded at the level that is shown", () => {
+  const slot = slotOf();
+  const { renderer, pose } = drawing();
+  pose([posedOf(slot, { spread: true, following: 1 })], { level: 32 });
+  slot.done.length = 0;
+  renderer.lookAhead([posedOf(slot, { spread: true, following: 1 })]);
+  assert.deepEqual(slot.done, ["begin at 1", "part", "part"]);
+});
+
+test("of several, one is decoded a part in a picture, and all are posed", () => {
+  const slots = [slotOf(), slotOf()];
+  const { pose } = drawing();
+  const show = (frame) => pose(slots.map((slot) => posedOf(slot, { spread: true, frame, following: 1 })));
+  show(0);
+  assert.deepEqual(
+    slots.map(({ done }) => done.splice(0)[0]),
+    ["whole at 0", "whole at 0"], // the first of each comes at once
+  );
+  const parts = [0, 0, 1, 1].map((frame) => {
+    show(frame);
+    return slots.map(({ done }) => done.filter((each) => each === "part").length);
+  });
+  assert.deepEqual(
+    parts,
+    [1, 2, 3, 4].map((made) => [made, 0]),
+  );
+  assert.deepEqual(
+    slots.map((slot) => moves(slot).length),
+    [2, 2],
+  );
+});
+
+test("an avatar that nobody sees takes no turn", () => {
+  const [seen, behind] = [slotOf(), slotOf()];
+  const { pose } = drawing();
+  const posed = (frame) => [
+    posedOf(behind, { spread: true, frame, following: 1 - frame, place: [0, 0, 50] }),
+    posedOf(seen, { spread: true, frame, following: 1 - frame }),
+  ];
+  pose(posed(0));
+  behind.done.length = 0;
+  for (const frame of [0, 0, 1, 1, 0]) pose(posed(frame));
+  assert.ok(behind.done.every((each) => !/part|whole|begin/.test(each)));
+  assert.ok(seen.done.includes("show"));
+});
+
+test("a picture that takes too long has fewer splats, where a number of milliseconds is asked for", () => {
+  for (const [frameBudget, limited] of [
+    [null, null],
+    [10, 2],
+  ]) {
+    const { renderer, pose } = drawing();
+    const look = { frameBudget, level: "auto" };
+    const slots = [slotOf(), slotOf()];
+    for (let i = 0; i < 100; i++) {
+      pose(
+        slots.map((slot) => posedOf(slot)),
+        look,
+      );
+      renderer.decodes.time(20);
+    }
+    const { budget } = renderer.limited({ ...LOOK, ...look });
+    assert.equal(budget !== null, limited !== null);
+    assert.ok(budget === null || budget < 4);
+  }
 });
 
 /** A renderer that holds these slots, and which of them it makes room for. */
 function holding(...slots) {
-  const renderer = { slots, rooms: [], rearrange: (next) => (renderer.rooms.push(next), (renderer.slots = next)) };
+  const renderer = {
+    slots,
+    decodes: new Decodes(),
+    free: Renderer.prototype.free,
+    rooms: [],
+    rearrange: (next) => (renderer.rooms.push(next), (renderer.slots = next)),
+  };
   return renderer;
 }
 

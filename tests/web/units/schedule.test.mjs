@@ -1,62 +1,50 @@
-// Which parts of which decode a displayed frame makes, with a frame of an avatar that notes it.
+// Which parts of which decode a displayed frame makes; test_modules.py compares all of it with Python.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { PARTS } from "../../../python/mua/web/channels.js";
-import { DecodeSchedule } from "../../../python/mua/web/schedule.js";
+import { ALONE, DecodeSchedule } from "../../../python/mua/web/schedule.js";
 
+const NOTHING = { whole: null, finish: 0, show: false, begin: null, parts: 0 };
+const walk = (frame, level = 0) => ({ clip: "walk", frame, level });
+
+/** What displayed frames do for avatars, of which each is [due, following, more]. */
 function begun() {
-  const done = [];
-  const frame = {
-    partsLeft: 0,
-    decode: (_, window, level) => done.push(`whole ${window} at ${level}`),
-    begin: (window, level) => (done.push(`begin ${window} at ${level}`), (frame.partsLeft = PARTS)),
-    advance: () => (done.push("part"), (frame.partsLeft -= 1)),
-    show: () => done.push("show"),
+  const schedule = new DecodeSchedule();
+  let displayed = 0;
+  return (avatars, parts = 1) => {
+    displayed += 1;
+    const asks = Object.entries(avatars).map(([key, [due, following, more = {}]]) => {
+      const clip = "walk";
+      const moments = { due: { clip, frame: due }, following: { clip, frame: following } };
+      return [key, { ...moments, level: 0, rank: 0, spread: true, ...more }];
+    });
+    return Object.fromEntries(schedule.plan(new Map(asks), displayed, parts));
   };
-  const schedule = new DecodeSchedule(frame);
-  /** What a displayed frame does, and whether other channels are shown. */
-  const record = (due, following, level = 0, clip = "walk") => {
-    const asked = { due: { clip, frame: due }, following: { clip, frame: following }, level };
-    const changed = schedule.record("pass", asked, ({ clip: of, frame: at }) => `${of} ${at}`);
-    return [changed, ...done.splice(0)];
-  };
-  return record;
 }
 
-test("the first pose is decoded at once, and nothing more in that frame", () => {
-  const record = begun();
-  assert.deepEqual(record(5, 6), [true, "whole walk 5 at 0"]);
+test("the first pose of an avatar alone is decoded at once, and nothing more in that frame", () => {
+  assert.deepEqual(begun()({ a: [5, 6] }).a, { ...NOTHING, whole: walk(5) });
 });
 
-test("the pose that follows is decoded a part in each frame, and shown when it is due", () => {
-  const record = begun();
-  record(5, 6);
-  assert.deepEqual(record(5, 6), [false, "begin walk 6 at 0", "part"]);
-  for (let part = 1; part < PARTS; part++) assert.deepEqual(record(5, 6), [false, "part"]);
-  assert.deepEqual(record(5, 6), [false]);
-  assert.deepEqual(record(6, 7), [true, "show", "begin walk 7 at 0", "part"]);
+test("the pose that follows is decoded a half in each frame, and shown when it is due", () => {
+  const frame = begun();
+  frame({ a: [5, 6] });
+  assert.deepEqual(frame({ a: [5, 6] }).a, { ...NOTHING, begin: walk(6), parts: ALONE });
+  assert.deepEqual(frame({ a: [5, 6] }).a, { ...NOTHING, parts: PARTS - ALONE });
+  assert.deepEqual(frame({ a: [5, 6] }).a, NOTHING);
+  assert.deepEqual(frame({ a: [6, 7] }).a, { ...NOTHING, show: true, begin: walk(7), parts: ALONE });
 });
 
-test("what is due before it is whole is completed, and nothing more in that frame", () => {
-  const record = begun();
-  record(5, 6);
-  record(5, 6);
-  assert.deepEqual(record(6, 7), [true, ...new Array(PARTS - 1).fill("part"), "show"]);
+test("several take turns, a part in a frame, the larger first", () => {
+  const frame = begun();
+  const avatars = { a: [5, 6, { rank: 1 }], b: [8, 9, { rank: 2 }] };
+  assert.deepEqual(frame(avatars), { a: NOTHING, b: { ...NOTHING, begin: walk(9), parts: 1 } });
+  for (let part = 1; part < PARTS; part++) assert.deepEqual(frame(avatars).b.parts, 1);
+  assert.deepEqual(frame(avatars), { a: { ...NOTHING, begin: walk(6), parts: 1 }, b: NOTHING });
 });
 
-test("a pose that nobody saw coming is decoded at once", () => {
-  const record = begun();
-  record(5, 6);
-  record(5, 6);
-  assert.deepEqual(record(9, 10), [true, "whole walk 9 at 0"]);
-  assert.deepEqual(record(9, 10, 0, "wave"), [true, "whole wave 9 at 0"]);
-});
-
-test("another level comes with the next pose while it plays, and at once while it rests", () => {
-  const record = begun();
-  record(5, 6);
-  assert.deepEqual(record(5, 6, 1), [false, "begin walk 6 at 1", "part"]);
-  assert.deepEqual(record(5, 5, 1), [true, "whole walk 5 at 1"]);
-  assert.deepEqual(record(5, 5, 1), [false]);
+test("what may not be spread is decoded at once, also beside others", () => {
+  const shown = begun()({ a: [5, 5, { spread: false, level: 2 }], b: [8, 9] });
+  assert.deepEqual([shown.a, shown.b.parts], [{ ...NOTHING, whole: walk(5, 2) }, 1]);
 });

@@ -29,7 +29,7 @@ function engineOf(...places) {
     drawn: "what the canvas shows",
     way: [0, 0, 0],
     followed: () => engine.way,
-    renderer: { device: "device", submit: (...given) => noted.submitted.push(given) },
+    renderer: { device: "device", displays() {}, submit: (...given) => noted.submitted.push(given) },
     posed: () => "posed",
     look: "look",
     drawNow: () => (noted.drawn += 1),
