@@ -288,7 +288,7 @@ def test_a_decode_that_is_spread_shows_what_one_at_once_shows(opened: Open, smal
 
 
 def test_avatars_that_take_turns_show_what_one_alone_shows(opened: Open, small: Path) -> None:
-    """All of them play on until each has had its turn, then rest at that frame: bit for bit, without another decode."""
+    """Both play on until each has had its turn, then rest at that frame: bit for bit, without another decode."""
     other = synthetic_avatar(3)
     page, rate = opened(a=small.read_bytes(), b=encode(other, storage="f32")), read(small).encoding.rate
     assert load(page) == load(page, '"b.muaavatar"') == ""
@@ -296,12 +296,15 @@ def test_avatars_that_take_turns_show_what_one_alone_shows(opened: Open, small: 
     at_once = screenshot(page)
     show(page, SPLATS, 3, rate)
     page.evaluate("""(() => {
+      player.renderer.draw(player.posed(), player);
       const posed = player.posed().map((one) => ({ ...one, following: 4, spread: true }));
       for (let turn = 0; turn < 10; turn++) player.renderer.lookAhead(posed);
       globalThis.made = player.entries.map(({ slot }) => slot.frame.hidden);
     })()""")
     assert page.evaluate("player.entries.map(({ slot }) => slot.frame.partsLeft)") == [0, 0]
-    page.evaluate("player.renderer.draw(player.posed().map((one) => ({ ...one, frame: 4, following: 5, spread: true })), player)")
+    page.evaluate("""
+      player.renderer.draw(player.posed().map((one) => ({ ...one, frame: 4, following: 5, spread: true })), player)
+    """)
     assert page.evaluate("player.entries.map(({ slot }, i) => slot.frame.shown === made[i])") == [True, True]
     show(page, SPLATS, 4, rate)
     np.testing.assert_array_equal(screenshot(page), at_once)

@@ -3,8 +3,9 @@ using UnityEngine;
 namespace Mua
 {
     /// <summary>
-    /// How many splats all avatars in the scene may show together. Their levels of detail are chosen within it, for the nearest
-    /// avatar first; where not even the coarsest levels fit, these are shown. Without one, the distance alone decides.
+    /// How many splats all avatars in the scene may show together, and how long a frame may take, which the device measures.
+    /// Their levels of detail are chosen within it, for the nearest avatar first; where not even the coarsest levels fit,
+    /// these are shown. Without one, the distance alone decides.
     /// </summary>
     [ExecuteAlways, DisallowMultipleComponent, AddComponentMenu("MUA/Avatar Budget")]
     public sealed class AvatarBudget : MonoBehaviour
@@ -16,12 +17,29 @@ namespace Mua
         [SerializeField, Min(0), Tooltip("Most splats of all avatars together whose level of detail is automatic.")]
         private int splats = Default;
 
+        [SerializeField, Min(0)]
+        [Tooltip("Milliseconds of a frame on the graphics device: where it takes longer, fewer splats are shown. 0: no such limit.")]
+        private float milliseconds = 0;
+
         /// <summary>Most splats of all avatars together.</summary>
         public int Splats
         {
             get => splats;
             set => splats = Mathf.Max(value, 0);
         }
+
+        /// <summary>
+        /// Milliseconds of a frame on the graphics device, or from one frame to the next where it reports no time; 0 for no
+        /// limit. Fewer splats are shown where frames take longer, down to the coarsest levels, and more again where there is room.
+        /// </summary>
+        public float Milliseconds
+        {
+            get => milliseconds;
+            set => milliseconds = Mathf.Max(value, 0);
+        }
+
+        /// <summary>Milliseconds, or 0 where there is no limit.</summary>
+        internal static float FrameLimit => current == null ? 0 : current.milliseconds;
 
         /// <summary>Splats, or -1 where there is no budget.</summary>
         internal static long Limit => current == null ? -1 : current.splats;

@@ -86,9 +86,6 @@ namespace Mua
         /// <summary>How far outside of training the pose is that is shown, 0 to 1.</summary>
         public double Outside => shown.Outside;
 
-        /// <summary>Parts still missing from the decode that was begun and is not shown.</summary>
-        public int PartsLeft => ChannelDecoder.Parts - decoded;
-
         /// <summary>The last pose, in the avatar's space.</summary>
         public SkeletonPose Skeleton => skeleton;
 
@@ -120,10 +117,11 @@ namespace Mua
             Repose(commands, rotations, translations, place);
         }
 
-        /// <summary>Appends all parts of a decode, without posing.</summary>
+        /// <summary>Appends all parts of a decode, without posing; one that was begun is given up.</summary>
         public void DecodeChannels(
             CommandBuffer commands, ReadOnlySpan<double> rotations, ReadOnlySpan<double> translations, int level = 0)
         {
+            decoded = ChannelDecoder.Parts;
             Begin(shown, rotations, translations, level);
             for (int part = 0; part < ChannelDecoder.Parts; part++)
             {

@@ -16,11 +16,13 @@ namespace Mua
         private AvatarLoader loader; // null once everything is on the device
         private AvatarBuffers buffers;
         private AvatarMotion motion;
-        private DecodeSchedule schedule;
+        private Camera neededBy; // the last camera whose image it is in
+        private int neededFrame = -2; // displayed frame of that
         private string chosen = ""; // the clip's name when it took effect
         private string refusal; // why there is no room beside the other avatars
         private bool hasMoved; // since the last Record
-        private bool isDue; // Move was called since the last Record
+        private bool isDue; // Move was called since the last Ask
+        private bool isMissed; // frames went by without an Ask
         private bool spreads; // a decode over displayed frames
         private bool isScaleReported, isLevelReported;
         private int level;
@@ -57,6 +59,12 @@ namespace Mua
 
         /// <summary>The decoder; null until it is ready.</summary>
         public AvatarFrame Decoded { get; private set; }
+
+        /// <summary>Which decodes there are, and what the displayed frame does for them.</summary>
+        public DecodeTurn Turn { get; } = new DecodeTurn();
+
+        /// <summary>Whether it is not known yet what this displayed frame decodes.</summary>
+        public bool IsDue => isDue || !spreads;
 
         /// <summary>Its views other than splats; null until it is ready.</summary>
         public AvatarSurface Surface { get; private set; }
@@ -127,10 +135,13 @@ namespace Mua
             hasMoved |= motion.Sample(Time.timeAsDouble, step);
             Decoded.Stand(motion.Pose.Current, motion.Pose.CurrentTranslations, placement.Value);
             spreads = owner.SpreadDecode && Application.isPlaying
-                && (Views & AvatarViews.Geometry) == 0 // which is of the finest level
-                && !isDue; // else frames went by without a Record
+                && (Views & AvatarViews.Geometry) == 0; // which is of the finest level
+            isMissed = isDue;
             isDue = true;
-            schedule.ShowWhole(motion.Pose);
+            if (Turn.ShowWhole(motion.Pose.Due)) // frames drawn without a Record use it from now on
+            {
+                Decoded.Show();
+            }
             Surface.CastShadow(Views, Bounds, Layer);
         }
 
@@ -163,18 +174,65 @@ namespace Mua
             return Decoded.IsShown && eyes.Sees(Decoded.Low, Decoded.High, reach);
         }
 
-        /// <summary>Appends what has changed since the last call: a decode or a part of one, another pose, or nothing.</summary>
-        public void Record(CommandBuffer commands)
+        /// <summary>
+        /// Whether this camera needs it now, or another one did in this displayed frame or the last.
+        /// </summary>
+        public bool IsNeeded(Camera camera, AvatarEyes eyes)
+        {
+            bool isNow = IsNeededFor(eyes);
+            if (isNow)
+            {
+                neededBy = camera;
+                neededFrame = Time.frameCount;
+            }
+            return isNow || (!ReferenceEquals(neededBy, camera) && neededFrame >= Time.frameCount - 1);
+        }
+
+        /// <summary>Asks for the decodes of this displayed frame.</summary>
+        public void Ask(AvatarEyes eyes, bool alone)
         {
             AvatarPose pose = motion.Pose;
-            if (isDue || !spreads)
+            Turn.Ask = new DecodeAsk
             {
-                hasMoved |= schedule.Record(commands, pose, Level, spreads);
-            }
+                Due = pose.Due,
+                Following = pose.Following,
+                Level = Level,
+                Rank = alone ? 0 : Seen(eyes).Height * pose.Turned,
+                Spreads = spreads && !(alone && isMissed),
+                MayLag = pose.MayLag,
+            };
             isDue = false;
+        }
+
+        /// <summary>Appends what Turn says.</summary>
+        public void Decode(CommandBuffer commands)
+        {
+            DecodeSteps steps = Turn.Steps;
+            if (steps.Whole != DecodeTurn.None)
+            {
+                AvatarPose pose = Window(steps.Whole);
+                Decoded.DecodeChannels(commands, pose.Window, pose.WindowTranslations, DecodeTurn.Level(steps.Whole));
+            }
+            Advance(commands, steps.Finish);
+            if (steps.Shows)
+            {
+                Decoded.Show();
+            }
+            if (steps.Begin != DecodeTurn.None)
+            {
+                AvatarPose pose = Window(steps.Begin);
+                Decoded.Begin(pose.Window, pose.WindowTranslations, DecodeTurn.Level(steps.Begin));
+            }
+            Advance(commands, steps.Parts);
+            hasMoved |= steps.Shows || steps.Whole != DecodeTurn.None;
+        }
+
+        /// <summary>Appends what brings it to its pose, where that has changed since the last call.</summary>
+        public void Record(CommandBuffer commands)
+        {
             if (hasMoved)
             {
-                Decoded.Repose(commands, pose.Current, pose.CurrentTranslations, placement.Value);
+                Decoded.Repose(commands, motion.Pose.Current, motion.Pose.CurrentTranslations, placement.Value);
             }
             hasMoved = false;
         }
@@ -184,11 +242,13 @@ namespace Mua
         {
             var eye = new Vector3(eyes.Middle.x, eyes.Middle.y, eyes.Middle.z);
             Vector3 aside = Vector3.Max(Vector3.Max(Decoded.Low - eye, eye - Decoded.High), Vector3.zero);
-            double distance = aside.magnitude, focal = eyes.Projection[0].m11 * eyes.Screen[1] / 2;
+            double distance = aside.magnitude, focal = Math.Abs(eyes.Projection[0].m11) * eyes.Screen[1] / 2;
+            double metre = focal / Math.Max(distance, eyes.Near);
             return new AvatarSeen
             {
                 Distance = distance,
-                Texel = Decoded.Size * buffers.TexelLength * Math.Abs(focal) / Math.Max(distance, eyes.Near),
+                Texel = Decoded.Size * buffers.TexelLength * metre,
+                Height = (Decoded.High.y - Decoded.Low.y) * metre,
                 Counts = buffers.SplatCounts,
                 Level = level,
             };
@@ -245,7 +305,6 @@ namespace Mua
             Decoded = null;
             buffers = null;
             motion = null;
-            schedule = null;
             refusal = null;
         }
 
@@ -263,7 +322,6 @@ namespace Mua
             Decoded = new AvatarFrame(resources, buffers);
             Surface = new AvatarSurface(resources, Decoded);
             motion = new AvatarMotion(buffers.Avatar);
-            schedule = new DecodeSchedule(Decoded);
             AvatarWorld.Add(this, resources);
             loader.Dispose();
             loader = null;
@@ -271,6 +329,22 @@ namespace Mua
             ChooseClip();
             BindRig();
             CheckLevel();
+        }
+
+        /// <summary>The pose with the window of a decode, which it takes note of.</summary>
+        private AvatarPose Window(long decode)
+        {
+            motion.Pose.ReadWindow(DecodeTurn.Window(decode));
+            motion.Pose.MarkDecoded();
+            return motion.Pose;
+        }
+
+        private void Advance(CommandBuffer commands, int parts)
+        {
+            for (int i = 0; i < parts; i++)
+            {
+                Decoded.Advance(commands);
+            }
         }
 
         /// <summary>The level that the owner asks for, where distance does not choose; the finest where there is none.</summary>

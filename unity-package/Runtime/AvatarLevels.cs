@@ -29,11 +29,11 @@ namespace Mua
         }
 
         /// <summary>Takes what the eyes of one camera see, and chooses where it is the first of a frame.</summary>
-        public void See(IReadOnlyList<AvatarInstance> avatars, AvatarEyes eyes)
+        /// <param name="budget">Splats of all together; negative for as many as there are.</param>
+        public void See(IReadOnlyList<AvatarInstance> avatars, AvatarEyes eyes, long budget)
         {
             bool isFirst = frame != Time.frameCount;
             frame = Time.frameCount;
-            long budget = AvatarBudget.Limit;
             int count = 0;
             for (int i = 0; i < avatars.Count; i++)
             {

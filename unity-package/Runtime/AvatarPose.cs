@@ -24,6 +24,7 @@ namespace Mua
         private readonly double[] currentTranslations; // [J, 3]
         private readonly double[] start; // [J, 4] of the clip's frame
         private readonly double[] startTranslations; // [J, 3]
+        private readonly double[] decoded; // [J, 4] newest of the last decode
         private readonly double[] next; // [J, 4]
         private readonly double[] nextTranslations; // [J, 3]
         private ClipSampler clip; // of the window; null where it is of transforms
@@ -46,6 +47,7 @@ namespace Mua
             currentTranslations = new double[3 * skeleton.JointCount];
             start = new double[4 * skeleton.JointCount];
             startTranslations = new double[3 * skeleton.JointCount];
+            decoded = new double[4 * skeleton.JointCount];
             next = new double[4 * skeleton.JointCount];
             nextTranslations = new double[3 * skeleton.JointCount];
         }
@@ -70,6 +72,28 @@ namespace Mua
 
         /// <summary>Whether a decode of Due that takes some displayed frames is late by no more than a frame of the avatar.</summary>
         public bool MayLag { get; private set; }
+
+        /// <summary>Largest angle by which a joint has turned since the window that was marked, radians.</summary>
+        public double Turned
+        {
+            get
+            {
+                double least = 1; // cosine of half the angle
+                for (int i = 0; i < current.Length; i += 4)
+                {
+                    double cosine = current[i] * decoded[i] + current[i + 1] * decoded[i + 1]
+                        + current[i + 2] * decoded[i + 2] + current[i + 3] * decoded[i + 3];
+                    least = Math.Min(least, Math.Abs(cosine));
+                }
+                return 2 * Math.Acos(least);
+            }
+        }
+
+        /// <summary>Marks the window that was read last as decoded.</summary>
+        public void MarkDecoded()
+        {
+            Array.Copy(window, decoded, decoded.Length);
+        }
 
         /// <summary>The pose without motion: the bind pose.</summary>
         public void Hold()
@@ -141,7 +165,7 @@ namespace Mua
             nextTranslations.CopyTo(currentTranslations, 0);
             rested = isSame ? rested : 0;
             double age = (seconds - newest) * rate;
-            MayLag = ChannelDecoder.Parts * (seconds - sampled) * rate <= LongestLag;
+            MayLag = ChannelDecoder.Parts / DecodeSchedule.Alone * (seconds - sampled) * rate <= LongestLag;
             sampled = seconds;
             if (rested == frames)
             {

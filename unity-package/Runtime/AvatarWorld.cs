@@ -20,6 +20,7 @@ namespace Mua
         private readonly List<AvatarFrame> frames = new List<AvatarFrame>();
         private readonly List<AvatarDraw> draws = new List<AvatarDraw>();
         private readonly AvatarLevels levels = new AvatarLevels();
+        private readonly AvatarTurns turns = new AvatarTurns();
         private readonly SplatDraw splatDraw;
         private readonly AvatarBuiltIn builtIn;
         private SplatFrame splats;
@@ -93,7 +94,7 @@ namespace Mua
 
         /// <summary>
         /// Appends what one camera needs of the avatars in its view: decoding and posing what moved since it was last drawn, then
-        /// one sort for the eyes. An avatar is posed where its shadow alone may be in view, too.
+        /// one sort for the eyes. An avatar is posed where its shadow alone may be in view, too; several take turns to be decoded.
         /// Whether there is anything to draw; splats are projected in perspective only.
         /// </summary>
         public bool Record(CommandBuffer commands, Camera camera, AvatarEyes eyes)
@@ -112,9 +113,11 @@ namespace Mua
             {
                 avatars[i].Decoded.IsShown = avatars[i].IsShownTo(camera);
             }
-            levels.See(avatars, eyes);
+            levels.See(avatars, eyes, turns.Limit);
+            turns.Take(commands, avatars, camera, eyes);
             for (int i = 0; i < avatars.Count; i++)
             {
+                avatars[i].Decoded.IsShown &= avatars[i].Decoded.IsDecoded; // it may be another's turn
                 if (avatars[i].IsNeededFor(eyes))
                 {
                     avatars[i].Record(commands);

@@ -7,12 +7,12 @@ namespace Mua
 {
     /// <summary>
     /// From a window of poses to channels: the dispatches of a decode, in parts that displayed frames can share, in the order
-    /// of python/mua/player/channels.py. The buffers between the kernels are made once; no part reads what another has left in them.
+    /// of python/mua/player/channels.py. The buffers between the kernels are made once: parts read what the one before left in them.
     /// </summary>
     internal sealed class ChannelDecoder : IDisposable
     {
-        /// <summary>Parts of a decode, which move about as many bytes each: geometry; mesh and appearance.</summary>
-        public const int Parts = 2;
+        /// <summary>Parts of a decode, which take about as long each.</summary>
+        public const int Parts = 4;
 
         private const int AppearanceRow = 3; // first row of appearance in the channels; a row has four half floats
 
@@ -45,17 +45,25 @@ namespace Mua
             }
         }
 
-        /// <summary>Appends one of Parts: from the components in `channels` to this part's channels.</summary>
+        /// <summary>Appends one of Parts, in their order: from the components in `channels` to their results there.</summary>
         public void Part(CommandBuffer commands, ChannelSet channels, int part)
         {
-            if (part == 0)
+            bool isGeometry = part < Parts / 2;
+            BranchBuffers branch = isGeometry ? avatar.Geometry : avatar.Appearance;
+            BranchLevel shown = isGeometry ? channels.Level.Geometry : channels.Level.Appearance;
+            commands.BeginSample(AvatarStages.Texture);
+            if (part % 2 == 0)
             {
-                Branch(commands, avatar.Geometry, channels.Level.Geometry, channels, 0);
+                Blend(commands, branch, channels);
             }
             else
             {
+                Texels(commands, branch, shown, channels, isGeometry ? 0 : AppearanceRow);
+            }
+            commands.EndSample(AvatarStages.Texture);
+            if (part == 1)
+            {
                 Coarse(commands, channels);
-                Branch(commands, avatar.Appearance, channels.Level.Appearance, channels, AppearanceRow);
             }
         }
 
@@ -99,29 +107,50 @@ namespace Mua
             commands.EndSample(AvatarStages.CoarseMesh);
         }
 
-        /// <summary>
-        /// Coefficients, LL, level by level as long as there are details; then the valid texels to the channels.
-        /// </summary>
-        private void Branch(
-            CommandBuffer commands, BranchBuffers branch, BranchLevel shown, ChannelSet channels, int firstRow)
+        /// <summary>Coefficients, LL, and level by level up to the finest details.</summary>
+        private void Blend(CommandBuffer commands, BranchBuffers branch, ChannelSet channels)
         {
-            commands.BeginSample(AvatarStages.Texture);
             GraphicsBuffer alpha = Mlp(commands, branch.Mlp, channels.Components);
-            int levels = branch.Details.Length, size = avatar.Avatar.Texels.Size >> avatar.Avatar.Wavelet.Levels;
-            blendSubbands.Low(commands, branch, alpha, size, textures[levels % 2]);
+            int levels = branch.Details.Length;
+            blendSubbands.Low(commands, branch, alpha, Size(0), textures[levels % 2]);
             int offset = branch.Channels * branch.Rank;
             for (int level = 0; level < levels; level++)
             {
-                GraphicsBuffer ll = textures[(levels - level) % 2], fine = textures[(levels - level - 1) % 2];
+                if (level > 0)
+                {
+                    Synthesise(commands, branch, level - 1);
+                }
                 BandBuffers band = branch.Details[level];
                 blendSubbands.Detail(commands, band, branch.Channels, alpha, offset, details);
-                inverseDwt.Full(commands, avatar, branch.Channels, size, ll, details, fine);
                 offset += branch.Channels * band.Rank;
-                size *= 2;
+            }
+        }
+
+        /// <summary>The finest level with details; then the valid texels to the channels.</summary>
+        private void Texels(
+            CommandBuffer commands, BranchBuffers branch, BranchLevel shown, ChannelSet channels, int firstRow)
+        {
+            int levels = branch.Details.Length;
+            if (levels > 0)
+            {
+                Synthesise(commands, branch, levels - 1);
             }
             inverseDwt.UpsampleTexels(
-                commands, channels.Level, shown, branch.Channels, size, textures[0], channels.TexelChannels, firstRow);
-            commands.EndSample(AvatarStages.Texture);
+                commands, channels.Level, shown, branch.Channels, Size(levels), textures[0], channels.TexelChannels, firstRow);
+        }
+
+        /// <summary>One level with its details, to planes of twice the size.</summary>
+        private void Synthesise(CommandBuffer commands, BranchBuffers branch, int level)
+        {
+            int finest = branch.Details.Length;
+            GraphicsBuffer ll = textures[(finest - level) % 2], fine = textures[(finest - level - 1) % 2];
+            inverseDwt.Full(commands, avatar, branch.Channels, Size(level), ll, details, fine);
+        }
+
+        /// <summary>Samples along a side of LL, or of what so many levels made of it.</summary>
+        private int Size(int level)
+        {
+            return avatar.Avatar.Texels.Size >> avatar.Avatar.Wavelet.Levels << level;
         }
 
         private static int Widest(LayerBuffers[] mlp)

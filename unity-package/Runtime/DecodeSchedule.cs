@@ -1,116 +1,122 @@
-using UnityEngine.Rendering;
+using System.Collections.Generic;
 
 namespace Mua
 {
     /// <summary>
-    /// Decides which part of which decode a displayed frame makes, so that none has to make all of it. The poses of a
-    /// clip that come next are decoded part by part in the displayed frames before they are due; those of a rig are
-    /// shown a displayed frame or two after they came. A pose that nobody saw coming, the first or one that was sought,
-    /// is decoded at once. Another level of detail comes with the next decode, at rest at once. As
-    /// python/mua/player/schedule.py.
+    /// Decides which part of which decode a displayed frame makes, so that its time does not grow with the number of avatars.
+    /// One that is alone in view shows in time what is due: a clip's next pose is known, and decoded before. Several take
+    /// turns, in rounds: first those never decoded, then those that have waited Longest, then the largest on screen whose pose
+    /// changed most. As python/mua/avatar/decode_turns.py; tests hold both to it.
     /// </summary>
     internal sealed class DecodeSchedule
     {
-        private const long None = -1;
-        private const int Levels = 16; // more than an avatar has
+        /// <summary>Parts in a displayed frame of an avatar that is alone in view: half of a decode.</summary>
+        public const int Alone = 2;
 
-        private readonly AvatarFrame frame;
-        private long shown = None; // the window's number and the level of detail
-        private long coming = None; // begun, and not shown
+        /// <summary>Displayed frames, a quarter of a second at 72 Hz.</summary>
+        public const int Longest = 18;
 
-        public DecodeSchedule(AvatarFrame frame)
+        private DecodeTurn holder; // whose decode is being made
+        private int round = 1;
+
+        /// <summary>Sets the steps of one displayed frame; how many parts several avatars made in turns.</summary>
+        /// <param name="turns">Avatars in view whose steps are not set yet, in an order that stays.</param>
+        /// <param name="frame">The displayed frame's number.</param>
+        /// <param name="parts">Parts in it where several avatars take turns.</param>
+        /// <param name="alone">Whether no other avatar is in view.</param>
+        public int Plan(List<DecodeTurn> turns, int frame, int parts, bool alone)
         {
-            this.frame = frame;
-        }
-
-        /// <summary>
-        /// Shows the due decode where it is complete already; frames drawn without a Record use it from now on.
-        /// </summary>
-        public void ShowWhole(AvatarPose pose)
-        {
-            if (pose.Due == Window(coming) && frame.PartsLeft == 0)
+            int taken = 0;
+            for (int i = 0; i < turns.Count; i++)
             {
-                Swap();
-            }
-        }
-
-        /// <summary>
-        /// Appends what one displayed frame decodes; whether other channels are shown than before. A frame that must complete
-        /// what is due does no more. Where it spreads nothing, it decodes what is due at once.
-        /// </summary>
-        public bool Record(CommandBuffer commands, AvatarPose pose, int level, bool spreads)
-        {
-            long due = pose.Due * Levels + level, following = due;
-            if (spreads && pose.MayLag && shown != None)
-            {
-                due = coming != None ? coming : shown;
-            }
-            else if (spreads && pose.Following != pose.Due)
-            {
-                due = Window(shown) == pose.Due ? shown : Window(coming) == pose.Due ? coming : due;
-                following = pose.Following * Levels + level;
-            }
-            bool isOther = due != shown;
-            int taken = isOther ? Show(commands, pose, due) : 0;
-            if (following != shown && taken == 0)
-            {
-                LookAhead(commands, pose, following);
-            }
-            return isOther;
-        }
-
-        /// <summary>Shows what is due; how many parts that took.</summary>
-        private int Show(CommandBuffer commands, AvatarPose pose, long due)
-        {
-            int taken = ChannelDecoder.Parts;
-            if (due == coming)
-            {
-                taken = frame.PartsLeft;
-                for (int i = 0; i < taken; i++)
+                DecodeTurn turn = turns[i];
+                turn.Begin(frame);
+                if (alone || !turn.Ask.Spreads)
                 {
-                    frame.Advance(commands);
+                    taken += turn.ShowDue();
                 }
-                Swap();
+                else
+                {
+                    turn.ShowLate();
+                }
             }
-            else
+            if (!alone)
             {
-                pose.ReadWindow(Window(due));
-                frame.DecodeChannels(commands, pose.Window, pose.WindowTranslations, Level(due));
-                shown = due;
-                coming = None;
+                return Serve(turns, frame, parts);
             }
-            return taken;
-        }
-
-        private void LookAhead(CommandBuffer commands, AvatarPose pose, long following)
-        {
-            if (Window(following) != Window(coming))
+            holder = null;
+            for (int i = 0; i < turns.Count && taken == 0; i++) // a frame that must complete what is due does no more
             {
-                pose.ReadWindow(Window(following));
-                frame.Begin(pose.Window, pose.WindowTranslations, Level(following));
-                coming = following;
+                turns[i].LookAhead(Alone);
             }
-            if (frame.PartsLeft > 0)
+            return 0;
+        }
+
+        /// <summary>Makes parts of one avatar's decode after the other's; none has two in one frame.</summary>
+        private int Serve(List<DecodeTurn> turns, int frame, int parts)
+        {
+            int spare = parts;
+            while (spare > 0)
             {
-                frame.Advance(commands);
+                if (holder == null || !turns.Contains(holder) || !holder.Ask.Spreads || holder.PartsLeft == 0)
+                {
+                    holder = Next(turns, frame);
+                    if (holder == null)
+                    {
+                        break;
+                    }
+                    holder.TakeTurn(round, frame);
+                }
+                spare -= holder.Make(spare);
             }
+            return parts - spare;
         }
 
-        private void Swap()
+        /// <summary>Whose turn it is, in this round or, once all that wait were served, in the next; null where none waits.</summary>
+        private DecodeTurn Next(List<DecodeTurn> turns, int frame)
         {
-            frame.Show();
-            shown = coming;
-            coming = None;
+            DecodeTurn first = FirstOfRound(turns, frame, out bool anyWaits);
+            if (first == null && anyWaits)
+            {
+                round++;
+                first = FirstOfRound(turns, frame, out anyWaits);
+            }
+            return first;
         }
 
-        private static long Window(long decode)
+        private DecodeTurn FirstOfRound(List<DecodeTurn> turns, int frame, out bool anyWaits)
         {
-            return decode == None ? None : decode / Levels;
+            DecodeTurn first = null;
+            anyWaits = false;
+            for (int i = 0; i < turns.Count; i++)
+            {
+                DecodeTurn turn = turns[i];
+                if (!turn.Ask.Spreads || turn.IsServed || !turn.Waits)
+                {
+                    continue;
+                }
+                anyWaits = true;
+                if (turn.Round != round && (first == null || IsBefore(turn, first, frame)))
+                {
+                    first = turn;
+                }
+            }
+            return first;
         }
 
-        private static int Level(long decode)
+        private static bool IsBefore(DecodeTurn a, DecodeTurn b, int frame)
         {
-            return (int)(decode % Levels);
+            if (a.HasShown != b.HasShown)
+            {
+                return b.HasShown;
+            }
+            int waited = Overdue(a, frame), other = Overdue(b, frame);
+            return waited != other ? waited > other : a.Ask.Rank > b.Ask.Rank;
+        }
+
+        private static int Overdue(DecodeTurn turn, int frame)
+        {
+            return frame - turn.Since >= Longest ? frame - turn.Since : 0;
         }
     }
 }

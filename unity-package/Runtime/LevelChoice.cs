@@ -11,6 +11,9 @@ namespace Mua
         /// <summary>Pixels along a side of a texel of its finest level.</summary>
         public double Texel;
 
+        /// <summary>Pixels of its box's height.</summary>
+        public double Height;
+
         /// <summary>Splats by level, the finest first.</summary>
         public int[] Counts;
 

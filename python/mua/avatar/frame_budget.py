@@ -50,7 +50,7 @@ def measure(
     if budget.frames < WINDOW:
         return budget
     started = replace(budget, frames=0, over=0, near=0)
-    least = -(-PARTS * avatars // LONGEST) if splats is not None else 1  # parts by which none waits longer than LONGEST
+    least = max(-(-PARTS * avatars // LONGEST), 1) if splats is not None else 1  # parts by which none waits longer
     if budget.over >= FEW:
         return _lower(started, least, splats)
     if budget.near >= FEW and budget.parts >= least:

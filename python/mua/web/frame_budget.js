@@ -36,7 +36,7 @@ export class FrameBudget {
     if (this.#frames < WINDOW) return;
     const [isOver, isNear] = [this.#over >= FEW, this.#near >= FEW];
     this.#frames = this.#over = this.#near = 0;
-    const least = splats ? Math.ceil((PARTS * avatars) / LONGEST) : 1; // parts by which none waits longer than LONGEST
+    const least = splats ? Math.max(Math.ceil((PARTS * avatars) / LONGEST), 1) : 1; // parts by which none waits longer than LONGEST
     if (isOver) this.#lower(least, splats);
     else if (isNear && this.parts >= least) this.#roomy = 0;
     else if (this.#roomy + 1 < this.#patience) this.#roomy += 1;
