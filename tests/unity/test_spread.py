@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from csharp import ROOT, CSharp
-from frame_bounds import FRAME_ORDER, PARTS_ORDER
+from frame_bounds import DECODE_ORDER, FRAME_ORDER, HALVES
 from replay import replay
 from synthetic_avatar import synthetic_avatar
 
@@ -18,7 +18,7 @@ from mua.asset import write
 from mua.gpu import Device
 
 FRAMES = 24  # displayed
-POSED = len(FRAME_ORDER) - sum(map(len, PARTS_ORDER))  # dispatches of a frame that decodes nothing
+POSED = len(FRAME_ORDER) - len(DECODE_ORDER)  # dispatches of a frame that decodes nothing
 SPREAD, AT_ONCE = "spread", "at once"
 SHADOW = 3  # pass
 
@@ -97,14 +97,14 @@ def test_a_clip_shows_in_every_displayed_frame_what_is_due_and_no_frame_decodes_
     assert spread.outside == at_once.outside
     assert len(set(at_once.outside)) >= FRAMES // 3 - 1
     assert max(at_once.dispatches) == len(FRAME_ORDER)
-    assert max(spread.dispatches[3:]) == POSED + max(map(len, PARTS_ORDER))  # the first decode is at once
+    assert max(spread.dispatches[3:]) == POSED + max(HALVES)  # the first decode is at once
     assert (spread.sets, at_once.sets) == (2, 1)
 
 
 def test_a_displayed_frame_of_two_cameras_decodes_one_part(play: Play) -> None:
     spread, at_once = play("SpreadsForTwoCameras")
     assert [alike(*pair) for pair in zip(spread.kept, at_once.kept, strict=True)] == [True] * FRAMES
-    assert max(spread.dispatches[3:]) == 2 * POSED - 1 + max(map(len, PARTS_ORDER))  # posed once, sorted for each
+    assert max(spread.dispatches[3:]) == 2 * POSED - 1 + max(HALVES)  # posed once, sorted for each
 
 
 def test_another_level_comes_with_the_next_decode_and_makes_no_frame_decode_all(play: Play) -> None:
@@ -115,9 +115,9 @@ def test_another_level_comes_with_the_next_decode_and_makes_no_frame_decode_all(
     late += [found[::-1].index(min(at_once.splats)) for found in (at_once.splats, spread.splats)]
     assert 0 < late[0] <= 5  # displayed frames; a pose is due after three
     assert 0 < late[1] - late[2] <= 5
-    assert max(spread.dispatches[3:]) == POSED + max(map(len, PARTS_ORDER))
+    assert max(spread.dispatches[3:]) == POSED + max(HALVES)
     thirds = (spread.dispatches[6:], spread.dispatches[7:], spread.dispatches[8:])
-    once = 3 * POSED + sum(map(len, PARTS_ORDER))  # each part in one of three displayed frames
+    once = 3 * POSED + len(DECODE_ORDER)  # each half in one of three displayed frames
     assert {sum(frames) for frames in zip(*thirds, strict=False)} == {once}
 
 
@@ -155,7 +155,7 @@ def test_a_rig_is_shown_one_displayed_frame_late(play: Play) -> None:
     late = zip(spread.kept[1:], at_once.kept, strict=False)
     assert [alike(*pair) for pair in late] == [True] * (FRAMES - 1)
     assert spread.outside[1:] == at_once.outside[:-1]
-    assert max(spread.dispatches[1:]) == POSED + max(map(len, PARTS_ORDER))
+    assert max(spread.dispatches[1:]) == POSED + max(HALVES)
 
 
 def test_a_rig_that_nobody_saw_for_a_while_shows_its_pose_of_now(play: Play) -> None:

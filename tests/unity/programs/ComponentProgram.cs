@@ -15,6 +15,7 @@ namespace Mua
     {
         private const int Patience = 4000; // frames, with a millisecond each, until loading must be over
         private const float Step = 1f / 72;
+        private const int Turns = 2 * (ChannelDecoder.Parts + 1); // frames in which two avatars are decoded
 
         private static readonly List<GameObject> Scene = new List<GameObject>();
         private static AvatarResources resources;
@@ -74,7 +75,7 @@ namespace Mua
         private static void Crowd()
         {
             AvatarRenderer first = Show(files[0]), second = Show(files[1]);
-            Frames(2);
+            Frames(Turns);
             Say("both", AvatarWorld.Current.SplatCount);
             second.Views = AvatarViews.Template;
             Frames(2);
@@ -85,7 +86,7 @@ namespace Mua
             Say("fewer", Recorder.AliveCount < alive ? 1 : 0);
             second.enabled = true;
             Until(second);
-            Frames(2);
+            Frames(Turns);
             Say("again", Recorder.AliveCount == alive ? 1 : 0);
             first.Load(files[1]);
             Until(first);
@@ -107,12 +108,13 @@ namespace Mua
         {
             AvatarRenderer first = Show(files[0]), second = Show(files[1]);
             first.IsPlaying = second.IsPlaying = false;
-            Frames(2);
+            Frames(Turns);
             Say("both", Dispatches(1));
             Vector3 near = new Vector3(0, 0, -1.5f * second.Bounds.size.magnitude), far = 4 * near;
             second.transform.position = near;
             second.Frame = 3;
             Say("shadow", Dispatches(1));
+            Frames(Turns);
             Say("one", Dispatches(1));
             second.transform.position = far;
             second.Frame = 5;
@@ -128,7 +130,7 @@ namespace Mua
             Say("drawn", AvatarWorld.Current.Draws.Count);
             first.transform.position = second.transform.position = Vector3.zero;
             Say("again", Dispatches(1));
-            Frames(2);
+            Frames(Turns);
             Say("back", Dispatches(1));
         }
 
