@@ -204,6 +204,7 @@ namespace Mua
         {
             Show();
             Avatars[1].Views = AvatarViews.Template;
+            Advance(2 * (ChannelDecoder.Parts + 1)); // each has its turn
             Frame("one of two", true);
             Camera.onPreRender += EndSecond;
             Frame("one destroyed", true);
