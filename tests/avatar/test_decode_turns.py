@@ -2,6 +2,7 @@
 
 from collections import Counter
 from dataclasses import replace
+from typing import cast
 
 import pytest
 from turn_scenarios import CLIP, HEADSET, Actor, Frame, play, run, wander
@@ -121,7 +122,7 @@ def test_a_clip_is_never_shown_before_it_is_due() -> None:
             assert not (one.begin and one.begin.moment != state.following)
     shown = [turns.avatars[0].shown for _, turns, _ in run(play([Actor(i, HEADSET) for i in range(3)], FRAMES))]
     dues = [frame.asks[0].due for frame in play([Actor(0, HEADSET)], FRAMES)]
-    late = [(due - one.moment) % CLIP for due, one in zip(dues, shown, strict=True) if one]
+    late = [(cast(int, due) - cast(int, one.moment)) % CLIP for due, one in zip(dues, shown, strict=True) if one]
     assert min(late) == 0
     assert max(late) <= HEADSET * (max(LONGEST, 3 * PARTS) + 2 * PARTS) + 1
 
@@ -187,7 +188,7 @@ def test_one_rig_alone_is_one_displayed_frame_late() -> None:
     for frame, turns, steps in run(play([Actor(0, HEADSET, rig=True)], FRAMES)):
         assert turns.avatars[0].shown == Decode(before)
         assert frame.number == 0 or made(steps) <= ALONE
-        before = frame.asks[0].due
+        before = cast(int, frame.asks[0].due)
 
 
 @pytest.mark.parametrize("seed", range(40))

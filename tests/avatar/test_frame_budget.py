@@ -1,6 +1,7 @@
 """A frame holds as many parts and splats as its milliseconds allow, and what was too much is not tried all the time."""
 
 from collections.abc import Callable
+from itertools import pairwise
 
 import pytest
 
@@ -67,7 +68,7 @@ def test_what_was_too_much_is_tried_ever_more_rarely(exact: bool) -> None:
     """Where one more step takes the frame from much room to too long."""
     decided = settle(lambda budget: 10 if budget.parts == 1 else 30, 400, exact=exact)
     tried = [i for i, one in enumerate(decided) if one.parts == 2]
-    gaps = [after - before for before, after in zip(tried, tried[1:], strict=False)]
+    gaps = [after - before for before, after in pairwise(tried)]
     assert gaps == sorted(gaps)
     assert gaps[-1] >= PATIENCE
 

@@ -103,6 +103,7 @@ def test_properties_are_taken_away_by_none(opened: Open) -> None:
     page.evaluate(f"Object.assign({ELEMENT}, {{ speed: null, budget: undefined, stereo: false, src: '' }})")
     page.wait(f"{ELEMENT}.player === null")
     assert page.evaluate(f"[{ELEMENT}.speed, {ELEMENT}.getAttribute('budget'), {ELEMENT}.stereo]") == [1, None, False]
+    assert page.evaluate(f"[{ELEMENT}.budget, {ELEMENT}.framebudget].every((limit) => limit === null)")
 
 
 def test_what_cannot_be_shown_is_said_and_the_picture_stays(opened: Open) -> None:

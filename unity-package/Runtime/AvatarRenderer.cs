@@ -89,7 +89,7 @@ namespace Mua
         private AvatarLevel level = AvatarLevel.Automatic;
 
         [SerializeField]
-        [Tooltip("Spread the decoding of a pose over several displayed frames, so that no single frame takes long.")]
+        [Tooltip("Spread decodes over displayed frames, in turns with other avatars in view, so that no single frame takes long.")]
         private bool spreadDecode = true;
 
         private AvatarInstance shown; // null while there is nothing to show
@@ -183,7 +183,8 @@ namespace Mua
         public int SplatCount => shown == null || shown.Decoded == null ? 0 : shown.Decoded.SplatCount;
 
         /// <summary>
-        /// Whether the decoding of a pose is spread over several displayed frames, where the display is faster than the avatar.
+        /// Whether decodes are spread over displayed frames: in turns with other avatars in view, or, for one that is alone,
+        /// where the display is faster than the avatar.
         /// </summary>
         public bool SpreadDecode
         {

@@ -3,7 +3,7 @@ using System;
 namespace Mua
 {
     /// <summary>
-    /// How many parts of decodes and how many splats a displayed frame may hold, by how long frames took on this very device.
+    /// How many parts of decodes and how many splats a displayed frame may hold, by how long frames took on this device.
     /// As python/mua/avatar/frame_budget.py; tests hold both to it.
     /// </summary>
     internal sealed class FrameBudget

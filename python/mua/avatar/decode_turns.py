@@ -16,7 +16,7 @@ ALONE = 2  # parts in a displayed frame of an avatar that is alone in view: half
 LONGEST = 18  # displayed frames, a quarter of a second at 72 Hz
 
 Moment = Hashable  # the newest pose of a window: a clip and its frame, or a number
-Key = Hashable  # tells avatars apart
+Key = int  # tells avatars apart
 
 
 @dataclass(frozen=True)

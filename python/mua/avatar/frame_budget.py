@@ -1,4 +1,4 @@
-"""How many parts of decodes and how many splats a displayed frame may hold, by how long frames took on this very device.
+"""How many parts of decodes and how many splats a displayed frame may hold, by how long frames took on this device.
 
 unity-package/Runtime/FrameBudget.cs and web/frame_budget.js decide alike; tests hold all to it.
 """

@@ -6,6 +6,7 @@ frame are what the device would measure, and its budget follows them.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import cast
 
 from mua.avatar.decode_turns import PARTS, Ask, Steps, Turns, take_turns
 from mua.avatar.frame_budget import FrameBudget, measure
@@ -94,19 +95,17 @@ def _play(
             budget = measure(budget, taken, avatars=len(metres), splats=(splats, finest))
         if frame >= SETTLED:
             longest, most = max(longest, taken), max(most, sum(each.parts for each in steps.values()))
-            late = (ages[i] - state.shown.moment for i, state in turns.avatars.items() if state.shown is not None)
-            oldest = max(oldest, *late)
+            moments = {i: state.shown.moment for i, state in turns.avatars.items() if state.shown is not None}
+            oldest = max(oldest, *(ages[i] - cast(int, moment) for i, moment in moments.items()))
     return Played(longest, most, splats, 1e3 * max(oldest - 1, 0) / RATE)
 
 
-def _decoded(
-    before: Turns, after: Turns, steps: Mapping[int, Steps], levels: Sequence[Sequence[_Level]]
-) -> float:
+def _decoded(before: Turns, after: Turns, steps: Mapping[int, Steps], levels: Sequence[Sequence[_Level]]) -> float:
     """Milliseconds of the parts in a displayed frame."""
     taken = 0.0
     for i, step in steps.items():
-        if step.parts:
+        coming = after.avatars[i].coming
+        if coming is not None and step.parts > 0:
             first = 0 if step.begin else PARTS - before.avatars[i].left
-            state = after.avatars[i]
-            taken += sum(levels[i][state.coming.level].parts[first : first + step.parts])
+            taken += sum(levels[i][coming.level].parts[first : first + step.parts])
     return taken

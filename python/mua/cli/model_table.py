@@ -55,8 +55,8 @@ def crowd_table(crowds: list[Crowd]) -> Table:
 def model_legend(device: ModelDevice, instructions: int) -> tuple[str, ...]:
     return (
         f"Milliseconds on {device.title}: modelled from counts, not measured; in brackets best to worst.",
-        "together: all decode half in one frame; in turns: one part of one decode, and with a budget of 13.9 ms as many "
-        "parts and splats as fit. oldest: milliseconds by which a shown decode is behind its pose.",
+        "together: all decode half in one frame; in turns: one part of one decode; budget: as many parts and splats as "
+        "fit 13.9 ms. oldest: milliseconds by which a shown decode is behind its pose.",
         f"A fragment computes {instructions} instructions. No avatar hides another; both eyes are drawn one by one.",
         *device.sources,
         f"Assumed, without a source: {device.assumed}.",

@@ -27,8 +27,8 @@ class DecodeSchedule:
         Where nothing is to be decoded ahead, `following` is `due`; else another level of detail comes with `following`.
         """
         self._displayed += 1
-        self._turns, steps = take_turns(self._turns, {"": Ask(due, following, level)}, self._displayed)
-        step = steps[""]
+        self._turns, steps = take_turns(self._turns, {0: Ask(due, following, level)}, self._displayed)
+        step = steps[0]
         if step.whole is not None:
             self._frame.decode_channels(commands, *window(due), step.whole.level)
         if step.show:

@@ -1,4 +1,4 @@
-// How many parts of decodes and how many splats a displayed frame may hold, by how long frames took on this very device.
+// How many parts of decodes and how many splats a displayed frame may hold, by how long frames took on this device.
 // Reference: python/mua/avatar/frame_budget.py; tests hold both to it.
 
 import { PARTS } from "./channels.js";
