@@ -46,7 +46,7 @@ def test_counts_what_a_frame_must_do(avatar_file: Path, tmp_path: Path) -> None:
     assert report["bytes"]["peak_frame"] == report["bytes"]["pose"] + max(halves)
     assert report["bytes"]["decode"] == sum(parts)
     assert report["bytes"]["pose"] + sum(parts) == sum(kernel["bytes"] for kernel in report["kernels"].values())
-    assert [part["dispatches"] for part in report["parts"]] == [9, 13]
+    assert [part["dispatches"] for part in report["parts"]] == [7, 6, 7, 2]
     assert report["triangles"]["2.2"] == 2 * report["splats"]
     assert 0 < report["fragments"]["2.2"] < report["fragments"]["1.0"] < report["fragments"]["0.6"]
     assert [level["texels"] for level in report["levels"]] == [32, 16, 8]

@@ -101,8 +101,8 @@ def test_a_budget_leaves_out_splats_until_a_frame_is_in_time() -> None:
     assert seen.budget.longest <= MILLISECONDS
     assert seen.budget.splats < seen.turns.splats
     quick = crowd(replace(ROUND, bandwidth=1e3, peak=10, clock=1), leveled(), INSTRUCTIONS, (1.0,) * 3)
-    assert (quick.budget.splats, quick.budget.parts) == (3_000, 3 * PARTS)
-    assert quick.budget.oldest == 0
+    assert (quick.budget.splats, quick.budget.oldest) == (3_000, 0)
+    assert quick.budget.parts > PARTS
 
 
 def test_blocks_of_pixels_are_those_that_squares_touch() -> None:
