@@ -22,6 +22,7 @@ namespace Mua
             {
                 Until(shown[i]);
                 shown[i].Frame = 2 * i;
+                shown[i].Speed = 0.5f; // so that the clip is longer than a decode may be old
             }
             for (int i = 0; i < 2 * Watched; i++)
             {
