@@ -17,7 +17,9 @@ from mua.files.inputs import is_capture, require_file, require_motion, require_t
 from mua.files.write import missing_directory
 from mua.motion.formats import require_format
 from mua.motion.mapping import read_mapping
-from mua.student.settings import Settings, preset, with_recipe
+from mua.student.budget import within_budget
+from mua.student.outline import Body
+from mua.student.settings import Budget, Settings, preset, with_recipe
 from mua.teachers.trained.settings import teacher_preset
 
 SUFFIX = ".muaavatar"
@@ -52,7 +54,10 @@ def student_settings(options: Mapping[str, Any]) -> Settings:
     """The student's preset with the options that override it, where there are such."""
     settings = replace(preset(options["preset"]), seed=options["seed"])
     overrides = {name: options[name] for name in ("frames", "texels") if options.get(name) is not None}
-    return replace(with_recipe(settings, options["recipe"]), **overrides)
+    budget = Budget(mflop=options["budget_mflop"], mb=options["budget_mb"])
+    settings = replace(with_recipe(settings, options["recipe"]), budget=budget, **overrides)
+    within_budget(settings, Body(), options["storage"])  # what no body can keep is refused before anything is recorded
+    return settings
 
 
 def _check_motion_options(settings: BakeSettings) -> None:
