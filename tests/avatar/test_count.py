@@ -19,7 +19,9 @@ PAPER_VERTICES = 5_514  # template of the family's released character
 
 def paper_avatar() -> Outline:
     descriptor = PoseEncoding(joints=tuple(range(1, 54)), rate=25).width
-    return outline(replace(preset("paper"), **vars(PAPERS)), Body(descriptor, PAPER_INPUTS, PAPER_VERTICES, PAPER_TEXELS))
+    return outline(
+        replace(preset("paper"), **vars(PAPERS)), Body(descriptor, PAPER_INPUTS, PAPER_VERTICES, PAPER_TEXELS)
+    )
 
 
 def test_paper_setting_costs_no_more_than_published() -> None:

@@ -46,7 +46,10 @@ def parameters(settings: Settings, *, vertices: int, texels: int, encoding: Pose
 def test_the_papers_setting_fits_the_papers_parameter_count() -> None:
     encoding = PoseEncoding(joints=tuple(range(1, 61)), rate=30.0)
     # 5,514 template vertices, 300 K splats (paper) and a skeleton of 60 encoded joints
-    assert parameters(replace(preset("paper"), **vars(PAPERS)), vertices=5514, texels=300_000, encoding=encoding) <= 26.67e6
+    assert (
+        parameters(replace(preset("paper"), **vars(PAPERS)), vertices=5514, texels=300_000, encoding=encoding)
+        <= 26.67e6
+    )
 
 
 def test_mlps_have_two_hidden_layers() -> None:

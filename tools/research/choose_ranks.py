@@ -11,19 +11,22 @@ import argparse
 import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from itertools import pairwise, product
+from functools import partial
+from itertools import product
 from pathlib import Path
 from typing import NamedTuple
 
-import mua.cli  # noqa: F401 first of all: it sets how torch's threads wait
 import numpy as np
 import torch
 from torch import Tensor
 
+import mua.cli  # noqa: F401 first of all: it sets how torch's threads wait
 from mua.asset.count import flops, parameters
 from mua.bench.random_avatar import ENCODING, RINGS, SPOKES
 from mua.channels import APPEARANCE, GEOMETRY
+from mua.pose.clip import is_range
 from mua.recording import Recording
+from mua.student.budget import PAPERS
 from mua.student.factorize import separable_blendshapes, truncated_svd
 from mua.student.outline import Body, outline
 from mua.student.sensitivity import measure_sensitivities
@@ -32,10 +35,11 @@ from mua.training.checkpoint import Checkpoints
 from mua.training.optimise import Run
 from mua.wavelets import Bands
 
-FRAMES = 250  # of each kind
-PICTURES = 12
-SWEEPS = 4
-RANKS = (8, 16, 24, 32, 48, 64, 96, 128, 192)  # that are tried
+FRAMES = 400  # of each kind, several times as many as blendshapes
+EVERY = 3  # of which channels one is measured: those of an attribute are alike
+PICTURES = 8
+SWEEPS = 3
+RANKS = (8, 16, 32, 64, 96, 128)  # that are tried
 BRANCHES = {"geometry": GEOMETRY, "appearance": APPEARANCE}
 PAPER = Body(ENCODING.width, 3 * (9 + 6 * len(ENCODING.joints)), RINGS * SPOKES, 300_000)  # as comparisons.md counts
 KINDS = ("training", "held out")
@@ -67,19 +71,19 @@ def main() -> None:
 
 def frontier(measured: Sequence[Errors]) -> Iterator[tuple[Settings, dict[Group, int]]]:
     """Settings from the fewest ranks on, each with one step more than the last."""
-    relative = {group: sum((own[group] / total(own)).sum(1) for own in measured) for group in measured[0]}
+    relative = {group: np.sum([(own[group] / total(own)).sum(1) for own in measured], axis=0) for group in measured[0]}
     at = dict.fromkeys(relative, 1)
-    while open_groups := [group for group in at if at[group] < len(RANKS)]:
-        settings = with_ranks(at)
-        yield settings, dict(at)
+    yield with_ranks(at), dict(at)
+    while steps := [{**at, group: place + 1} for group, place in at.items() if place < len(RANKS)]:
+        at = max(steps, key=partial(gain, relative, at))
+        yield with_ranks(at), at
 
-        def gain(group: Group) -> float:
-            longer = {**at, group: at[group] + 1}
-            price = costs(with_ranks(longer)) / costs(preset("paper")) - costs(settings) / costs(preset("paper"))
-            return float((relative[group][at[group]] - relative[group][at[group] + 1]) / price.sum())
 
-        at[max(open_groups, key=gain)] += 1
-    yield with_ranks(at), at
+def gain(relative: dict[Group, np.ndarray], before: dict[Group, int], after: dict[Group, int]) -> float:
+    """Error that a step removes for a share of what the paper's sizes cost, in parameters and operations."""
+    removed = sum(relative[group][before[group]] - relative[group][after[group]] for group in before)
+    price = (costs(with_ranks(after)) - costs(with_ranks(before))) / costs(replace(preset("paper"), **vars(PAPERS)))
+    return float(removed / price.sum())
 
 
 def total(errors: Errors) -> np.ndarray:
@@ -96,17 +100,17 @@ def costs(settings: Settings) -> np.ndarray:
 
 def with_ranks(at: dict[Group, int]) -> Settings:
     ranks = {branch: Ranks(*(RANKS[at[Group(branch, level)] - 1] for level in Bands._fields)) for branch in BRANCHES}
-    return replace(preset("paper"), **ranks)
+    return replace(preset("paper"), components=PAPERS.components, hidden=PAPERS.hidden, **ranks)
 
 
 def measure(recording: Recording) -> Errors:
     """The errors of images that ranks leave, to first order, summed over the channels of each branch."""
     run = Run(torch.Generator().manual_seed(0), Checkpoints(Path(), ""), lambda _: None, torch.device("cpu"))
     sensitivities = measure_sensitivities(recording, PICTURES, run)
-    rows = [np.linspace(0, n - 1, min(n, FRAMES)).astype(int) for n in map(recording.count, (False, True))]
+    rows = [user_rows(recording, held_out=kind) for kind in (False, True)]
     errors: Errors = {}
     for branch, channels in BRANCHES.items():
-        for channel in range(channels.start, channels.stop):
+        for channel in range(channels.start, channels.stop, EVERY):
             one = slice(channel, channel + 1)
             kinds = [recording.subbands(one, own, held_out=bool(kind)) for kind, own in enumerate(rows)]
             for level, own in zip(Bands._fields, zip(*kinds, strict=True), strict=True):
@@ -115,6 +119,13 @@ def measure(recording: Recording) -> Errors:
                 errors[group] = errors.get(group, 0) + left(own, changes, level, run.generator)
             print(f"channel {channel} of 23", file=sys.stderr, flush=True)
     return errors
+
+
+def user_rows(recording: Recording, *, held_out: bool) -> np.ndarray:
+    """Rows of a kind, evenly spaced, without those of the built-in range of motion."""
+    clips = [clip for clip in recording.clips if clip.held_out == held_out]
+    own = np.flatnonzero(np.repeat([not is_range(clip.name) for clip in clips], [len(clip.recorded) for clip in clips]))
+    return own[np.linspace(0, len(own) - 1, min(len(own), FRAMES)).astype(int)]
 
 
 def left(

@@ -43,6 +43,7 @@ def bake_settings(options: Mapping[str, Any]) -> BakeSettings:
     )
     if settings.teacher is None and (settings.character is None or not is_capture(settings.character)):
         check_inputs(settings.character, settings.motions)
+        within_budget(settings.student, Body(), settings.storage)  # before anything is recorded
     else:
         settings = _with_trained_teacher(settings, options)
     check_output(settings.output, settings.work)
@@ -55,9 +56,7 @@ def student_settings(options: Mapping[str, Any]) -> Settings:
     settings = replace(preset(options["preset"]), seed=options["seed"])
     overrides = {name: options[name] for name in ("frames", "texels") if options.get(name) is not None}
     budget = Budget(mflop=options["budget_mflop"], mb=options["budget_mb"])
-    settings = replace(with_recipe(settings, options["recipe"]), budget=budget, **overrides)
-    within_budget(settings, Body(), options["storage"])  # what no body can keep is refused before anything is recorded
-    return settings
+    return replace(with_recipe(settings, options["recipe"]), budget=budget, **overrides)
 
 
 def _check_motion_options(settings: BakeSettings) -> None:
