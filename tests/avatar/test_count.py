@@ -1,12 +1,9 @@
 """Counts against the paper's published figures and against a count by hand."""
 
-from dataclasses import replace
-
 from synthetic_avatar import synthetic_avatar
 
 from mua.asset.count import flops, parameters
 from mua.pose.encoding import PoseEncoding
-from mua.student.budget import PAPERS
 from mua.student.outline import Body, Outline, outline
 from mua.student.settings import preset
 
@@ -19,9 +16,7 @@ PAPER_VERTICES = 5_514  # template of the family's released character
 
 def paper_avatar() -> Outline:
     descriptor = PoseEncoding(joints=tuple(range(1, 54)), rate=25).width
-    return outline(
-        replace(preset("paper"), **vars(PAPERS)), Body(descriptor, PAPER_INPUTS, PAPER_VERTICES, PAPER_TEXELS)
-    )
+    return outline(preset("paper"), Body(descriptor, PAPER_INPUTS, PAPER_VERTICES, PAPER_TEXELS))
 
 
 def test_paper_setting_costs_no_more_than_published() -> None:

@@ -1,18 +1,14 @@
 """What a compared system costs at the setting of the paper equals sums by hand."""
 
-from dataclasses import replace
-
 import pytest
 import torch
 
 from mua.bench.random_avatar import ENCODING
-from mua.student.budget import PAPERS
 from mua.student.settings import preset
 from mua_research.system import Sizes
 from mua_research.systems import SYSTEMS
 
 # The paper's setting with the family's 5,514 vertices replaced by the stand-in's, see mua.bench.random_avatar.
-PAPER = replace(preset("paper"), **vars(PAPERS))
 INPUTS, HIDDEN, VERTICES, VALID, TAPS = 3 * (9 + 6 * 53), 384, 5508, 300_000, 10
 
 
@@ -72,7 +68,7 @@ def by_hand(name: str) -> tuple[int, int]:
 
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_costs_at_the_paper_setting_equal_sums_by_hand(name: str) -> None:
-    sizes = Sizes(PAPER, ENCODING, INPUTS, VERTICES, torch.arange(VALID), "bior4.4")
+    sizes = Sizes(preset("paper"), ENCODING, INPUTS, VERTICES, torch.arange(VALID), "bior4.4")
     system = SYSTEMS[name](sizes)
     mesh_size, mesh_cost = mlp_size(128)
     size, cost = by_hand(name)

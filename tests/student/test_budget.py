@@ -1,7 +1,7 @@
 """A budget gives the largest student of the measured frontier that keeps it."""
 
 import json
-from dataclasses import replace
+from dataclasses import astuple, replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -11,14 +11,16 @@ from trainings import FINISHED, Training
 
 from mua.asset import read
 from mua.asset.count import flops
+from mua.asset.tensors import Storage
 from mua.asset.write import encode
 from mua.bench.random_avatar import random_avatar
 from mua.errors import InputError
-from mua.student.budget import FRONTIER, cost, within_budget
+from mua.student.budget import FRONTIER, Sizes, cost, within_budget
 from mua.student.outline import Body
 from mua.student.settings import Budget, Settings, preset
 
 PERSON = Body(descriptor=1299, inputs=981, vertices=5508, texels=300_000)
+ROUNDING = 100 * float(np.finfo(np.float32).eps)  # of least squares on bases that hold all of a small recording
 BYTES = 0.01  # share by which the estimate of a file may differ from what is written
 
 
@@ -31,6 +33,13 @@ def test_each_size_costs_more_than_the_one_before_it() -> None:
     for less, more in pairwise(costs):
         assert (less.mflop or 0) < (more.mflop or 0)
         assert (less.mb or 0) < (more.mb or 0)
+
+
+def test_no_size_holds_less_than_a_smaller_one() -> None:
+    def numbers(sizes: Sizes) -> list[int]:
+        return [*astuple(sizes.geometry), *astuple(sizes.appearance), sizes.components, sizes.hidden]
+
+    assert all(np.less_equal(numbers(less), numbers(more)).all() for less, more in pairwise(FRONTIER))
 
 
 def test_the_choice_keeps_both_budgets_and_grows_with_them() -> None:
@@ -50,7 +59,7 @@ def test_without_a_budget_the_sizes_are_the_presets() -> None:
 
 
 @pytest.mark.parametrize("storage", ["f16", "f32"])
-def test_the_cost_is_that_of_the_written_file(storage: str) -> None:
+def test_the_cost_is_that_of_the_written_file(storage: Storage) -> None:
     settings = replace(preset("tiny"), texels=64)
     avatar = replace(random_avatar(settings), clips=())
     inputs, rig = len(avatar.components.margins), avatar.rig
@@ -71,7 +80,7 @@ def test_refuses_a_budget_that_no_student_keeps(given: dict[str, float], sentenc
 
 def test_a_larger_budget_costs_more_and_its_bases_miss_less(written: Path, tmp_path: Path, mua_train: Training) -> None:
     spent, missed = [], []
-    for mflop in (1.0, 1.5):
+    for mflop in (1.2, 2.0):
         ended = mua_train(written, "--budget-mflop", str(mflop))
         assert ended.status in FINISHED
         assert "The budget gives the student ranks of" in ended.out
@@ -80,4 +89,4 @@ def test_a_larger_budget_costs_more_and_its_bases_miss_less(written: Path, tmp_p
         training = json.loads((tmp_path / "a_errors.json").read_text())["groups"]["training"]
         missed.append([training["rms"][attribute]["best"] for attribute in ("offset", "SH")])
     assert spent[0] < spent[1]
-    assert np.all(np.array(missed[1]) <= np.array(missed[0]))
+    assert np.all(np.array(missed[1]) <= np.array(missed[0]) * (1 + ROUNDING))

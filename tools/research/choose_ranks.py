@@ -26,7 +26,6 @@ from mua.bench.random_avatar import ENCODING, RINGS, SPOKES
 from mua.channels import APPEARANCE, GEOMETRY
 from mua.pose.clip import is_range
 from mua.recording import Recording
-from mua.student.budget import PAPERS
 from mua.student.factorize import separable_blendshapes, truncated_svd
 from mua.student.outline import Body, outline
 from mua.student.sensitivity import measure_sensitivities
@@ -82,7 +81,7 @@ def frontier(measured: Sequence[Errors]) -> Iterator[tuple[Settings, dict[Group,
 def gain(relative: dict[Group, np.ndarray], before: dict[Group, int], after: dict[Group, int]) -> float:
     """Error that a step removes for a share of what the paper's sizes cost, in parameters and operations."""
     removed = sum(relative[group][before[group]] - relative[group][after[group]] for group in before)
-    price = (costs(with_ranks(after)) - costs(with_ranks(before))) / costs(replace(preset("paper"), **vars(PAPERS)))
+    price = (costs(with_ranks(after)) - costs(with_ranks(before))) / costs(preset("paper"))
     return float(removed / price.sum())
 
 
@@ -99,8 +98,10 @@ def costs(settings: Settings) -> np.ndarray:
 
 
 def with_ranks(at: dict[Group, int]) -> Settings:
-    ranks = {branch: Ranks(*(RANKS[at[Group(branch, level)] - 1] for level in Bands._fields)) for branch in BRANCHES}
-    return replace(preset("paper"), components=PAPERS.components, hidden=PAPERS.hidden, **ranks)
+    geometry, appearance = (
+        Ranks(*(RANKS[at[Group(branch, level)] - 1] for level in Bands._fields)) for branch in BRANCHES
+    )
+    return replace(preset("paper"), geometry=geometry, appearance=appearance)
 
 
 def measure(recording: Recording) -> Errors:

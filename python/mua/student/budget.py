@@ -25,18 +25,16 @@ class Sizes:
 
 
 # From docs/research/ranks.md; each costs more than the one before it, and errs less.
-# The paper's own sizes (Implementation Details), which are not on the frontier.
-PAPERS = Sizes(Ranks(192, 128, 96), Ranks(128, 128, 96), components=128, hidden=384)
-
 # From docs/research/ranks.md; each costs more than the one before it, and its bases hold more.
 FRONTIER = (
-    Sizes(Ranks(8, 8, 8), Ranks(8, 16, 8), components=24, hidden=128),
-    Sizes(Ranks(8, 16, 8), Ranks(16, 32, 8), components=32, hidden=128),
-    Sizes(Ranks(8, 32, 8), Ranks(32, 64, 16), components=48, hidden=192),
-    Sizes(Ranks(16, 32, 8), Ranks(48, 96, 32), components=64, hidden=192),
-    Sizes(Ranks(32, 64, 8), Ranks(64, 128, 32), components=96, hidden=256),
-    Sizes(Ranks(32, 64, 16), Ranks(96, 128, 64), components=128, hidden=384),
+    Sizes(Ranks(8, 8, 8), Ranks(16, 16, 8), components=32, hidden=128),
+    Sizes(Ranks(8, 16, 8), Ranks(32, 32, 8), components=48, hidden=128),
+    Sizes(Ranks(16, 16, 8), Ranks(32, 64, 16), components=64, hidden=192),
+    Sizes(Ranks(16, 32, 16), Ranks(64, 96, 32), components=96, hidden=256),
+    Sizes(Ranks(32, 64, 16), Ranks(64, 128, 64), components=96, hidden=256),
+    Sizes(Ranks(32, 64, 32), Ranks(96, 128, 64), components=128, hidden=384),
     Sizes(Ranks(32, 96, 32), Ranks(96, 128, 96), components=128, hidden=384),
+    Sizes(Ranks(32, 96, 64), Ranks(128, 128, 96), components=128, hidden=384),
     Sizes(Ranks(64, 128, 64), Ranks(128, 128, 128), components=128, hidden=384),
 )
 
@@ -65,8 +63,9 @@ def cost(settings: Settings, body: Body, storage: Storage) -> Budget:
     """What the avatar costs: at least that where some of the body is not known, at most where all of it is."""
     student = outline(settings, body)
     learnt = sum(parameters(student).values()) + student.components.directions.size
-    size = learnt * (4 if storage == "f32" else 2)
-    size += TEXEL_BYTES * body.texels + VERTEX_BYTES * body.vertices + OTHER_BYTES
+    size = (
+        learnt * (4 if storage == "f32" else 2) + TEXEL_BYTES * body.texels + VERTEX_BYTES * body.vertices + OTHER_BYTES
+    )
     return Budget(mflop=sum(flops(student).values()) / 1e6, mb=size / 1e6)
 
 
