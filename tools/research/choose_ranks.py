@@ -1,4 +1,4 @@
-"""Print which ranks show least error in images for what they cost, from few ranks to twice the paper's.
+"""Print which ranks show least error in images for what they cost, from few to many.
 
 python tools/research/choose_ranks.py hero.work/recording-* other.work/recording-*
 
@@ -34,7 +34,7 @@ from mua.training.checkpoint import Checkpoints
 from mua.training.optimise import Run
 from mua.wavelets import Bands
 
-FRAMES = 400  # of each kind, several times as many as blendshapes
+FRAMES = 400  # of each kind, at most
 EVERY = 3  # of which channels one is measured: those of an attribute are alike
 PICTURES = 8
 SWEEPS = 3
