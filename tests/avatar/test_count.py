@@ -1,20 +1,12 @@
 """Counts against the paper's published figures and against a count by hand."""
 
-import dataclasses
-import itertools
-
-import numpy as np
-import pywt
 from synthetic_avatar import synthetic_avatar
 
-from mua.arrays import Array
-from mua.asset.avatar import Avatar
 from mua.asset.count import flops, parameters
-from mua.avatar.model import Branch, Coarse, DetailBand, Layer, Mlp, Wavelet
-from mua.pose.encoding import Components, Normalization, PoseEncoding
-from mua.student.settings import Ranks, preset
+from mua.pose.encoding import PoseEncoding
+from mua.student.outline import Body, Outline, outline
+from mua.student.settings import preset
 
-PAPER = preset("paper")
 PAPER_PARAMETERS = 26.67e6  # paper, Tab. Comparison
 PAPER_FLOPS = 0.52e9
 PAPER_TEXELS = 300_000  # paper, Animatable Coarse Geometry
@@ -22,50 +14,9 @@ PAPER_INPUTS = 981  # as many components as the descriptor has numbers: the most
 PAPER_VERTICES = 5_514  # template of the family's released character
 
 
-def blank(*shape: int) -> Array:
-    """Zeros that take no memory."""
-    return np.broadcast_to(np.float32(0), shape)
-
-
-def mlp(*sizes: int) -> Mlp:
-    return tuple(Layer(blank(n, m), blank(n)) for m, n in itertools.pairwise(sizes))
-
-
-def paper_branch(channels: int, ranks: Ranks, inputs: int) -> Branch:
-    details = tuple(
-        DetailBand(blank(3, channels, n, n), blank(3, channels, r, n), blank(3, channels, r, n))
-        for n, r in ((48, ranks.d3), (96, ranks.d2))
-    )
-    return Branch(
-        mlp=mlp(inputs, PAPER.hidden, PAPER.hidden, channels * ranks.total),
-        ll_mean=blank(channels, 48, 48),
-        ll_basis=blank(channels, ranks.ll, 48, 48),
-        details=details,
-        static=blank(channels, PAPER_TEXELS),
-    )
-
-
-def paper_avatar() -> Avatar:
-    encoding = PoseEncoding(joints=tuple(range(1, 54)), rate=25)
-    taps = pywt.Wavelet("bior4.4")
-    return dataclasses.replace(
-        synthetic_avatar(),
-        encoding=encoding,
-        components=Components(
-            Normalization(blank(encoding.width), blank(encoding.width)),
-            blank(PAPER_INPUTS, encoding.width),
-            blank(2, PAPER_INPUTS),
-            blank(PAPER_INPUTS),
-        ),
-        coarse=Coarse(
-            mlp(PAPER_INPUTS, PAPER.hidden, PAPER.hidden, PAPER.components),
-            blank(PAPER_VERTICES, 3),
-            blank(PAPER.components, PAPER_VERTICES, 3),
-        ),
-        geometry=paper_branch(11, PAPER.geometry, PAPER_INPUTS),
-        appearance=paper_branch(12, PAPER.appearance, PAPER_INPUTS),
-        wavelet=Wavelet("bior4.4", 4, np.array(taps.rec_lo), np.array(taps.rec_hi)),
-    )
+def paper_avatar() -> Outline:
+    descriptor = PoseEncoding(joints=tuple(range(1, 54)), rate=25).width
+    return outline(preset("paper"), Body(descriptor, PAPER_INPUTS, PAPER_VERTICES, PAPER_TEXELS))
 
 
 def test_paper_setting_costs_no_more_than_published() -> None:

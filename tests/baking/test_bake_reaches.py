@@ -29,6 +29,8 @@ from mua.rig.character import Character
 BAKED = (
     "output",
     "preset",
+    "budget_mflop",
+    "budget_mb",
     "frames",
     "hold_out",
     "clips",

@@ -24,7 +24,7 @@ from mua.cli import display
 from mua.cli.display import Display
 from mua.recording import PlannedClip, TeacherWriter, record
 from mua.student import distil, source
-from mua.student.settings import STAGES, preset
+from mua.student.settings import STAGES, Budget, preset
 
 
 def test_leaves_an_avatar_of_the_recordings_texture_size(trained: Path) -> None:
@@ -205,3 +205,13 @@ def test_a_preset_says_how_large_the_student_is(
         assert command("train", written, "-o", tmp_path / "a.muaavatar", "--preset", name).status == 0
     assert [settings.hidden for settings in given] == [preset(name).hidden for name in ("tiny", "preview")]
     assert given[0] != given[1]
+
+
+def test_a_budget_is_that_of_the_student(
+    written: Path, tmp_path: Path, command: Commands, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    given: list[Any] = []
+    monkeypatch.setattr("mua.baking.distil._distil", lambda _, settings, __: given.append(settings.student.budget))
+    budget = ("--budget-mflop", "40", "--budget-mb", "20")
+    assert command("train", written, "-o", tmp_path / "a.muaavatar", *budget).status == 0
+    assert given == [Budget(mflop=40, mb=20)]

@@ -1,12 +1,29 @@
 """What an avatar costs, counted from the avatar itself: parameters and floating-point operations of a frame."""
 
+from typing import Protocol
+
 import numpy as np
 
-from mua.asset.avatar import Avatar
-from mua.avatar.model import Branch, Mlp
+from mua.avatar.model import Branch, Coarse, Mlp, Wavelet
+from mua.pose.encoding import Components
 
 
-def parameters(avatar: Avatar) -> dict[str, int]:
+class Counted(Protocol):
+    """What is counted of an avatar."""
+
+    @property
+    def components(self) -> Components: ...
+    @property
+    def coarse(self) -> Coarse: ...
+    @property
+    def geometry(self) -> Branch: ...
+    @property
+    def appearance(self) -> Branch: ...
+    @property
+    def wavelet(self) -> Wavelet: ...
+
+
+def parameters(avatar: Counted) -> dict[str, int]:
     """Learnt numbers by part; their sum is the paper's Param column (Tab. Comparison).
 
     Components of one joint are 0 for all others: what is 0 in them is stored, but is no parameter.
@@ -22,7 +39,7 @@ def parameters(avatar: Avatar) -> dict[str, int]:
     }
 
 
-def flops(avatar: Avatar) -> dict[str, int]:
+def flops(avatar: Counted) -> dict[str, int]:
     """Floating-point operations of one frame by stage, a multiply-add as two.
 
     Counted is what turns a motion descriptor into a Gaussian texture and a mesh; posing and rasterising are not,

@@ -11,6 +11,8 @@ from mua.baking.settings import BakeSettings, MotionRange
 from mua.baking.shared_options import (
     ClipsOption,
     DeviceOption,
+    MegabytesOption,
+    MflopOption,
     OutputOption,
     PresetOption,
     RecipeOption,
@@ -59,6 +61,8 @@ def bake(
         ),
     ] = None,
     texels: TexelsOption = None,
+    budget_mflop: MflopOption = None,
+    budget_mb: MegabytesOption = None,
     hold_out: Annotated[
         str | Sequence[str],
         Option("Clip to keep out of training, to measure errors on; may be repeated.", default="the end of every clip"),

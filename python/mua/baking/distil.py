@@ -15,6 +15,8 @@ from mua.baking.shared_options import (
     ClipsOption,
     DeviceName,
     DeviceOption,
+    MegabytesOption,
+    MflopOption,
     OutputOption,
     PresetOption,
     RecipeOption,
@@ -39,6 +41,8 @@ def train(
     *,
     output: OutputOption = "avatar.muaavatar",
     preset: PresetOption = "preview",
+    budget_mflop: MflopOption = None,
+    budget_mb: MegabytesOption = None,
     recipe: RecipeOption = "closed-form",
     stage: Annotated[
         StageName | None, Option("Run only this stage, up to its checkpoint.", default="all stages")

@@ -26,7 +26,8 @@ from mua.fidelity.compare import Fidelity
 from mua.files.write import remove_leftovers, replacing, require_writable, write_bytes
 from mua.pose.clip import Clip
 from mua.recording import Recording
-from mua.student.distil import distil
+from mua.student.budget import describe_sizes, within_budget
+from mua.student.distil import body_of, distil
 from mua.student.model import Student
 from mua.student.settings import Settings, StageName
 from mua.training.memory import release_memory
@@ -96,10 +97,14 @@ def distil_student(
     if distillation.processes.first:
         require_writable(distillation.output)
         remove_leftovers(distillation.output)
+    settings = distillation.settings
+    if settings.budget:
+        settings = within_budget(settings, body_of(recording, settings), distillation.storage)
+        listener.note(f"The budget gives the student {describe_sizes(settings)}.")
     with _within_memory(distillation):
         return distil(
             recording,
-            distillation.settings,
+            settings,
             device=distillation.device,
             directory=distillation.checkpoints,
             report=listener,

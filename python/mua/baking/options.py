@@ -17,7 +17,9 @@ from mua.files.inputs import is_capture, require_file, require_motion, require_t
 from mua.files.write import missing_directory
 from mua.motion.formats import require_format
 from mua.motion.mapping import read_mapping
-from mua.student.settings import Settings, preset, with_recipe
+from mua.student.budget import within_budget
+from mua.student.outline import Body
+from mua.student.settings import Budget, Settings, preset, with_recipe
 from mua.teachers.trained.settings import teacher_preset
 
 SUFFIX = ".muaavatar"
@@ -41,6 +43,7 @@ def bake_settings(options: Mapping[str, Any]) -> BakeSettings:
     )
     if settings.teacher is None and (settings.character is None or not is_capture(settings.character)):
         check_inputs(settings.character, settings.motions)
+        within_budget(settings.student, Body(), settings.storage)  # before anything is recorded
     else:
         settings = _with_trained_teacher(settings, options)
     check_output(settings.output, settings.work)
@@ -52,7 +55,8 @@ def student_settings(options: Mapping[str, Any]) -> Settings:
     """The student's preset with the options that override it, where there are such."""
     settings = replace(preset(options["preset"]), seed=options["seed"])
     overrides = {name: options[name] for name in ("frames", "texels") if options.get(name) is not None}
-    return replace(with_recipe(settings, options["recipe"]), **overrides)
+    budget = Budget(mflop=options["budget_mflop"], mb=options["budget_mb"])
+    return replace(with_recipe(settings, options["recipe"]), budget=budget, **overrides)
 
 
 def _check_motion_options(settings: BakeSettings) -> None:

@@ -22,6 +22,22 @@ TexelsOption = Annotated[
         multiple=COARSE_TEXELS,
     ),
 ]
+MflopOption = Annotated[
+    float | None,
+    Option(
+        "Most operations of a frame, in millions: the largest measured size of the student within it is taken.",
+        default="set by the preset",
+        least=1,
+    ),
+]
+MegabytesOption = Annotated[
+    float | None,
+    Option(
+        "Largest file without its clips, in megabytes as f16 (as f32 with --storage f32); i8 and packed are smaller.",
+        default="set by the preset",
+        least=0.1,
+    ),
+]
 ClipsOption = Annotated[
     str | int | Sequence[str],
     Option("Clip to store for playback; may be repeated. Also: all, none, or a number of clips."),

@@ -23,6 +23,7 @@ from mua.rig.bones import figure_scale
 from mua.rig.moving import moving_joints
 from mua.student.local import body_parts
 from mua.student.model import Student
+from mua.student.outline import Body
 from mua.student.sensitivity import measure_sensitivities
 from mua.student.settings import Settings, StageName
 from mua.student.stages import Samples, stages, train
@@ -84,17 +85,9 @@ def prepare(recording: Recording, settings: Settings) -> tuple[Student, Samples]
     size = recording.rig.texels.size
     if size != settings.texels:
         raise InputError(f"recording {recording.directory}: has {size} texels along a side, expected {settings.texels}")
-    training = [clip for clip in recording.clips if not clip.held_out]
     if not recording.count():
         raise InputError(f"recording {recording.directory}: holds no training frame, expected at least one")
-    skeleton = recording.rig.skeleton
-    used = moving_joints(recording.rig)
-    encoding = PoseEncoding(
-        choose_joints(skeleton, training, used),
-        rate=recording.rate,
-        remove_heading=settings.generalisation.remove_heading,
-        translated=choose_translated(skeleton, training, used),
-    )
+    encoding = encoding_of(recording, settings)
     descriptors = describe_frames(recording, encoding)
     units = units_of(encoding, figure_scale(recording.rig.mesh.vertices))
     components = principal_components(descriptors, normalization(descriptors, units), units, groups_of(encoding))
@@ -110,6 +103,24 @@ def prepare(recording: Recording, settings: Settings) -> tuple[Student, Samples]
     parts = body_parts(recording.rig, encoding) if settings.generalisation.fade < 1 else None
     measure = partial(measure_sensitivities, recording, settings.pictures) if settings.pictures else None
     return student, replace(_samples(recording, descriptors), parts=parts, sensitivities=measure)
+
+
+def encoding_of(recording: Recording, settings: Settings) -> PoseEncoding:
+    """The form of the descriptor, which follows from the joints that training frames move."""
+    training = [clip for clip in recording.clips if not clip.held_out]
+    skeleton, used = recording.rig.skeleton, moving_joints(recording.rig)
+    return PoseEncoding(
+        choose_joints(skeleton, training, used),
+        rate=recording.rate,
+        remove_heading=settings.generalisation.remove_heading,
+        translated=choose_translated(skeleton, training, used),
+    )
+
+
+def body_of(recording: Recording, settings: Settings) -> Body:
+    """What the cost of a student of `recording` follows from, with as many components of the pose as there can be."""
+    width, rig = encoding_of(recording, settings).width, recording.rig
+    return Body(width, width, len(rig.mesh.vertices), len(rig.texels.texels))
 
 
 def describe_frames(recording: Recording, encoding: PoseEncoding, *, held_out: bool = False) -> Array:

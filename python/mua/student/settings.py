@@ -38,6 +38,17 @@ class Generalisation:
 
 
 @dataclass(frozen=True)
+class Budget:
+    """The most that an avatar may cost; without numbers the settings' own sizes hold."""
+
+    mflop: float | None = None  # million operations of a frame, as mua-inspect counts them
+    mb: float | None = None  # megabytes of the file without its clips
+
+    def __bool__(self) -> bool:
+        return self.mflop is not None or self.mb is not None
+
+
+@dataclass(frozen=True)
 class Settings:
     """Sizes and schedules of one distillation."""
 
@@ -54,6 +65,7 @@ class Settings:
     generalisation: Generalisation = Generalisation()
     seed: int = 0
     start: Literal["closed form", "random"] = "closed form"
+    budget: Budget = Budget()  # by which ranks, components and width are chosen anew (`mua.student.budget`)
 
 
 PRESETS = {
