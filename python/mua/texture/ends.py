@@ -16,9 +16,7 @@ from mua.texture.footprints import Samples
 EDGE = 1.2  # standard deviations from its centre at which a surfel is about half opaque: its outline
 AWAY = 0.4  # distance of the outline from the surface over that from the centre: less would open round or layered parts
 LEAST = 0.25  # of its reach to one side that a surfel keeps
-KEPT = 0.8  # of its own surface to one side, over which it reaches at least
 TURNED = 0.5  # cosine between surfel and surface from which that is its own: over a crease, not around a hem
-FEW = 2  # samples: fewer say little about how far a surface extends
 HALVINGS = 4  # of the range in which the outline is sought
 NEAREST = 3, 24  # triangles among which the nearest point is sought, at first and where that is far
 APART = 10.0  # times the surface's size, between its pieces in the space in which the nearest triangles are sought
@@ -44,29 +42,39 @@ def end_at_surface(
     own = _Pieces(mesh, samples)
     piece = np.repeat(own.pieces[triangles], 4)
     far = np.flatnonzero(own.lie_off(starts + reach[:, None] * sides, reach, piece))
-    own_reach = KEPT * _extents(mesh, samples, frames, centres).ravel()
-    low, high = np.clip(own_reach[far], LEAST * reach[far], reach[far]), reach[far]
+    low, high = LEAST * reach[far], reach[far]
     for _ in range(HALVINGS):
         middle = (low + high) / 2
         off = own.lie_off(starts[far] + middle[:, None] * sides[far], middle, piece[far])
         low, high = np.where(off, low, middle), np.where(off, middle, high)
-    reach[far] = low
+    covered = _extents(
+        mesh,
+        samples,
+        own=own.pieces[samples.triangles] == own.pieces[triangles[samples.texels]],
+        frames=frames,
+        centres=centres,
+    ).ravel()
+    reach[far] = np.maximum(low, np.minimum(covered, reach)[far])
     there, back = np.moveaxis(reach.reshape(-1, 2, 2), 2, 0)
     return np.einsum("nkc,nk->nc", axes, (there - back) / 2), (there + back) / (2 * EDGE)
 
 
-def _extents(mesh: Mesh, samples: Samples, frames: Array, centres: Array) -> Array:
+def _extents(
+    mesh: Mesh,
+    samples: Samples,
+    *,
+    own: Array,  # [S] bool, on the piece of the surfel that has to cover it
+    frames: Array,  # [N, 3, 3] columns x, y, z
+    centres: Array,  # [N, 3] metres
+) -> Array:
     """How far the surface that each surfel has to cover and that faces its way reaches: [N, 2 axes, 2 sides] metres."""
     texels, facing = samples.texels, face_normals(mesh)[samples.triangles]
-    covered = ~samples.bare & (np.einsum("sc,sc->s", facing, frames[texels, :, 2]) > TURNED)
+    covered = own & ~samples.bare & (np.einsum("sc,sc->s", facing, frames[texels, :, 2]) > TURNED)
     texels, places = texels[covered], samples.places[covered]
     away = np.einsum("sc,sck->sk", places - centres[texels], frames[texels][:, :, :2])
-    extents = np.empty((len(centres), 2, 2))
+    extents = np.zeros((len(centres), 2, 2))
     for (axis, side), sign in zip(np.ndindex(2, 2), (1, -1, 1, -1), strict=True):
-        there = np.maximum(sign * away[:, axis], 0)
-        count = np.maximum(np.bincount(texels[there > 0], minlength=len(centres)), FEW)
-        squares = np.bincount(texels, there**2, len(centres))
-        extents[:, axis, side] = np.sqrt(3 * squares / count)  # of an even surface: its length
+        np.maximum.at(extents[:, axis, side], texels, sign * away[:, axis])
     return extents
 
 
