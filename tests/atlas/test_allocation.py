@@ -72,3 +72,19 @@ def test_the_eyes_of_a_face_get_more_texels_than_its_skin() -> None:
     eyes = (np.abs(place[:, 1] - 0.2 * 45 / 96) < 0.014) & (np.abs(np.abs(place[:, 0]) - 0.2 * 14 / 96) < 0.014)
     share = np.count_nonzero(eyes) / len(eyes)
     assert texels_of(face, eyes) > 1.25 * share * texels_of(face, np.ones(len(eyes), bool))
+
+
+def test_a_head_of_one_colour_leaves_texels_to_the_body() -> None:
+    skin = plain(190, 140, 120, 255)
+    shares = []
+    for image in (skin, NOISE):
+        figure = surfaces_of(patch(8, at=0, uv=WHOLE), patch(8, at=2, uv=WHOLE), images=(skin, image))
+        head = middles(figure)[:, 0] > 1.5
+        moved_by = np.where(figure.vertices[:, :1] > 1.5, 1, 0)
+        figure = replace(
+            figure,
+            skeleton=upright(("Hips", "Head"), (-1, 0)),
+            skin_indices=np.broadcast_to(moved_by, figure.skin_indices.shape).astype(figure.skin_indices.dtype),
+        )
+        shares.append(texels_of(figure, head) / texels_of(figure, np.ones(len(head), bool)))
+    assert shares[1] > 1.1 * shares[0]

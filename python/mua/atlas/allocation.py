@@ -4,6 +4,8 @@ Within the head, the hands and the rest of the body, the widths of texels are th
 together are least at the same number of texels. Errors are measured on the file's own textures.
 """
 
+from collections.abc import Collection
+
 import numpy as np
 from scipy.sparse import coo_matrix
 
@@ -24,6 +26,7 @@ FACE, FRONTAL = 3.0, 0.4  # how much finer the face is, and the share of views o
 FACE_SIZE = 2.0  # standard deviation about the middle of the face, over that of the head seen from the front
 LEAST_FINE = {"head": 0.35, "hands": 0.7, "body": 0.7}  # of the mean, in length; for hidden surface HIDDEN_FINE of it
 HIDDEN_FINE = 0.7
+PLAIN, PLAIN_FINE = 1e-5, 0.87  # loss of a head's texture below which it shows nothing, and how much coarser it then is
 SMOOTHING = 3  # rounds over neighbours
 HALVINGS = 30  # of the range in which the price of a texel is sought
 DEAREST = 2.0**10  # and the cheapest is 2^-60: such prices give the widest and the narrowest texels
@@ -35,8 +38,12 @@ def wanted_fineness(
     corners: Array,  # [F, 3, 2] UV of the file
     *,
     parts: Array,  # [F] into BODY_PARTS
+    chosen: Collection[str] = (),  # parts whose fineness somebody asked for
 ) -> Array:
-    """How many times finer in length than the mean of its part each triangle [F] is to be drawn."""
+    """How many times finer in length than the mean of its part each triangle [F] is to be drawn.
+
+    A head of one colour gives some of its texels to the rest of the figure, unless its fineness was asked for.
+    """
     positions = surfaces.vertices[surfaces.faces]
     surface, samples = areas(positions), spread_samples(positions)
     mean = np.sqrt(surface.sum() / TEXELS)
@@ -50,7 +57,11 @@ def wanted_fineness(
     errors = _smooth((_finely(losses) + SHAPE * WIDTHS) * weight[:, None], surface, surfaces.faces)
     # What lies just behind a face is fine as well: wide splats of the inside of a mouth would shine through the lips.
     least = (1 + (FACE - 1) * nearness) * np.where(seen < HIDDEN, HIDDEN_FINE, 1)
-    return _within_parts(errors, surface, surfaces.faces, least=least, parts=parts)
+    finer = _within_parts(errors, surface, surfaces.faces, least=least, parts=parts)
+    head = parts == BODY_PARTS.index("head")
+    if "head" not in chosen and surface @ (head * losses[:, OCTAVES == 0][:, 0]) <= PLAIN * surface[head].sum():
+        finer[head] *= PLAIN_FINE
+    return finer
 
 
 def _within_parts(

@@ -136,7 +136,7 @@ def _lay_out(
     finer, absent = factors(parts, surface, detail)
     cut, kept = len(np.unique(charts[anew])), len(np.unique(charts[~anew]))
     charts, finer = split_by_factor(nodes, corners, charts=charts, surface=surface, finer=finer)
-    finer *= wanted_fineness(surfaces, source.corners, parts=parts)
+    finer *= wanted_fineness(surfaces, source.corners, parts=parts, chosen=detail)
     flat = redrawn(even(corners, source.positions, charts), charts, finer)
     return _Layout(pack(flat, charts), as_is=False, notes=(_note(anew, kept=kept, cut=cut), *absent))
 
