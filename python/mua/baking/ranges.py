@@ -13,15 +13,15 @@ from mua.rig.character import Character
 from mua.student.settings import Settings
 
 SHARE = 4  # a quarter as many frames of the range as the user asks for of their own motion
+FEWEST = 135  # or as many as they ask for, up to so many
 SHORT_SHARE = 3  # where that motion is shorter, its missing frames are of the range too, up to a third of those asked
-FEWEST = 135  # for, or to so many
 
 
 def clips_of(settings: BakeSettings, character: Character) -> tuple[list[Clip], list[str]]:
     """The clips that a bake is of, and notes: those of the files, else the character's, else the range of motion."""
     if settings.motions or character.clips or settings.motion_range == "none":
         return load_clips(character, settings.motions, mapping=settings.mapping, feet=settings.feet)
-    clips = motion_range(character, (), frames=settings.student.frames, seed=settings.student.seed)
+    clips = motion_range(character, (), frames=settings.student.frames, seed=settings.student.seed, short=True)
     clips = [replace(clip, name=clip.name.removeprefix(RANGE_OF_MOTION)) for clip in clips]  # they are the motion
     note = f"{character.name}: holds no animation; its motion is a built-in range of motion made for its rig"
     return clips, [f"{note}. --motion adds motion of your own."]
@@ -47,4 +47,4 @@ def planned_range(
 
 def range_frames(asked: int, own: int) -> int:
     """How many frames of the range are recorded where `asked` were asked for and the user's motion gives `own`."""
-    return max(asked // SHARE, min(asked - own, max(asked // SHORT_SHARE, FEWEST)), 1)
+    return max(asked // SHARE, min(asked, FEWEST), min(asked - own, asked // SHORT_SHARE))
