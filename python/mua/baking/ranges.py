@@ -13,8 +13,9 @@ from mua.rig.character import Character
 from mua.student.settings import Settings
 
 SHARE = 4  # a quarter as many frames of the range as the user asks for of their own motion
-FEWEST = 135  # or as many as they ask for, up to so many
+FEW_SHARE, FEW = 2, 75  # or half as many, up to so many
 SHORT_SHARE = 3  # where that motion is shorter, its missing frames are of the range too, up to a third of those asked
+FEWEST = 135  # for, or to so many
 
 
 def clips_of(settings: BakeSettings, character: Character) -> tuple[list[Clip], list[str]]:
@@ -47,4 +48,5 @@ def planned_range(
 
 def range_frames(asked: int, own: int) -> int:
     """How many frames of the range are recorded where `asked` were asked for and the user's motion gives `own`."""
-    return max(asked // SHARE, min(asked, FEWEST), min(asked - own, asked // SHORT_SHARE))
+    missing = min(asked - own, max(asked // SHORT_SHARE, FEWEST))
+    return max(asked // SHARE, min(asked // FEW_SHARE, FEW), missing, 1)

@@ -34,8 +34,8 @@ def motion_range(
 ) -> list[Clip]:
     """Clips of what the character's joints can do, as many as `frames` recorded frames show; the seed chooses them.
 
-    With `short`, clips are cut where so few frames are recorded that playing all of them would take most time. Joints that it does not move, and bones whose length the `clips` of the user set, are as these have them on the
-    average.
+    With `short`, clips are cut where so few frames are recorded that playing all of them would take most time. Joints
+    that it does not move, and bones whose length the `clips` of the user set, are as these have them on the average.
     """
     rng = np.random.default_rng(seed)
     skeleton, rest = character.skeleton, _rest(character.skeleton, clips)
