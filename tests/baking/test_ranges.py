@@ -31,24 +31,27 @@ def bake_settings(directory: Path, *, frames: int = 240, motion_range: MotionRan
 @pytest.mark.parametrize(
     ("asked", "own", "expected"),
     [
-        (240, 240, 60),
-        (240, 200, 60),
+        (240, 240, 75),
+        (240, 200, 75),
         (240, 86, 135),
         (1500, 1500, 375),
         (1500, 86, 500),
         (1500, 1080, 420),
         (17000, 17000, 4250),
+        (100, 100, 50),
         (3, 3, 1),
     ],
 )
-def test_a_quarter_is_added_and_more_where_the_motion_is_short(asked: int, own: int, expected: int) -> None:
+def test_more_than_a_quarter_is_added_where_few_are_asked_for_or_the_motion_is_short(
+    asked: int, own: int, expected: int
+) -> None:
     assert range_frames(asked, own) == expected
 
 
 def test_frames_are_recorded_of_all_clips_of_the_range_and_none_kept_whole(tmp_path: Path) -> None:
     planned = planned_range(bake_settings(tmp_path), character(RIGS["T-pose"]), (), 240)
     assert len(planned) == 6
-    assert sum(len(clip.wanted) for clip in planned) == 60
+    assert sum(len(clip.wanted) for clip in planned) == 75
     assert all(len(clip.wanted) > 3 and not clip.whole and not clip.held_out for clip in planned)
     assert all(max(clip.wanted) > 0.8 * len(clip.clip) for clip in planned)
 

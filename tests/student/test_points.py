@@ -9,7 +9,7 @@ from limbs import limb_steps, limbs_apart, two_limbs
 
 from mua.student.components import Components
 from mua.student.points import BLEND, RADII, draw_close, draw_points, exchange, scatter
-from mua.student.regress import CLOTH, MESH, regress
+from mua.student.regress import MESH, POSED, SWUNG, regress
 from mua.student.settings import Generalisation
 from mua.training.checkpoint import Checkpoints
 from mua.training.optimise import Run
@@ -83,6 +83,7 @@ def test_an_mlp_follows_the_users_frames_and_the_others_roughly(tmp_path: Path) 
             stage="x",
             run=run,
             own=own,
+            fit=SWUNG,
             generalisation=Generalisation(own=known),
         )
         with torch.no_grad():
@@ -91,6 +92,23 @@ def test_an_mlp_follows_the_users_frames_and_the_others_roughly(tmp_path: Path) 
     assert errors["half"][half].mean() < 0.5 * size[half].mean()
     assert errors["half"][~half].mean() > 0.7 * size[~half].mean()
     assert errors["none"].mean() > 1.5 * errors["all"].mean()
+
+
+def test_what_the_pose_alone_shows_is_followed_beyond_the_users_frames(tmp_path: Path) -> None:
+    inputs, shown = two_limbs(300, seed=3, together=True)
+    unseen, truth = two_limbs(200, seed=4, together=True)
+    own = inputs.norm(dim=1) < inputs.norm(dim=1).median()
+    left = {}
+    for name, fit in (("posed", POSED), ("swung", SWUNG)):
+        run = Run(seeded(), Checkpoints(tmp_path / name, "k"), lambda _: None, torch.device("cpu"))
+        schedule = Schedule(steps=600, batch=64, lr=3e-3)
+        mlp = regress(
+            inputs, shown, components=PLAIN, hidden=64, schedule=schedule, stage="x", run=run, own=own, fit=fit
+        )
+        with torch.no_grad():
+            left[name] = (mlp(unseen) - truth).square().sum() / truth.square().sum()
+    assert left["posed"] < 0.4
+    assert left["posed"] < 0.7 * left["swung"]
 
 
 def test_close_points_are_those_of_a_frame_but_for_little_noise() -> None:
@@ -105,7 +123,7 @@ def test_a_final_fit_follows_the_users_frames_more_closely(tmp_path: Path) -> No
     inputs, shown = two_limbs(200, seed=3, together=True)
     own = inputs.norm(dim=1) < inputs.norm(dim=1).median()
     errors = {}
-    for name, fit in (("start", CLOTH), ("final", MESH)):
+    for name, fit in (("start", POSED), ("final", MESH)):
         run = Run(seeded(), Checkpoints(tmp_path / name, "k"), lambda _: None, torch.device("cpu"))
         mlp = regress(
             inputs,

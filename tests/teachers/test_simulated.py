@@ -10,7 +10,7 @@ from mua import rotation
 from mua.baking.plan import split
 from mua.channels import ATTRIBUTES, CHANNELS
 from mua.kernels.dq_skinning import blend_texels, blend_vertices, skin_splats
-from mua.pose.clip import Clip, Stretches
+from mua.pose.clip import RANGE_OF_MOTION, Clip, Stretches
 from mua.pose.skeleton import Pose
 from mua.recording import PlannedClip
 from mua.recording.record import played
@@ -72,6 +72,19 @@ def test_frames_not_wanted_are_poses_and_change_nothing(teacher: SimulatedTeache
     assert isinstance(some[11], TeacherFrame)
     np.testing.assert_array_equal(some[11].texture, every[11].texture)
     np.testing.assert_array_equal(some[11].mesh, every[11].mesh)
+
+
+def test_a_frame_of_the_range_of_motion_follows_from_its_pose_alone(teacher: SimulatedTeacher) -> None:
+    clip = swing(tube()).cut(slice(20))
+    shown = replace(clip, name=f"{RANGE_OF_MOTION}swing")
+    backwards = replace(shown, rotations=shown.rotations[::-1], translations=shown.translations[::-1])
+    frames, mirrored = whole_frames(teacher, shown), whole_frames(teacher, backwards)
+    for one, other in zip(frames, mirrored[::-1], strict=True):
+        np.testing.assert_array_equal(one.mesh, other.mesh)
+        np.testing.assert_array_equal(one.texture, other.texture)
+    assert np.abs(frames[-1].mesh - whole_frames(teacher, clip)[-1].mesh).max() > 1e-3
+    some = list(teacher.frames(shown, {3}))
+    assert [i for i, frame in enumerate(some) if isinstance(frame, TeacherFrame)] == [3]
 
 
 def test_a_held_out_end_goes_on_from_the_motion_before_it(teacher: SimulatedTeacher) -> None:

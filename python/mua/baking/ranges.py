@@ -13,6 +13,7 @@ from mua.rig.character import Character
 from mua.student.settings import Settings
 
 SHARE = 4  # a quarter as many frames of the range as the user asks for of their own motion
+FEW_SHARE, FEW = 2, 75  # or half as many, up to so many
 SHORT_SHARE = 3  # where that motion is shorter, its missing frames are of the range too, up to a third of those asked
 FEWEST = 135  # for, or to so many
 
@@ -21,7 +22,7 @@ def clips_of(settings: BakeSettings, character: Character) -> tuple[list[Clip], 
     """The clips that a bake is of, and notes: those of the files, else the character's, else the range of motion."""
     if settings.motions or character.clips or settings.motion_range == "none":
         return load_clips(character, settings.motions, mapping=settings.mapping, feet=settings.feet)
-    clips = motion_range(character, (), frames=settings.student.frames, seed=settings.student.seed)
+    clips = motion_range(character, (), frames=settings.student.frames, seed=settings.student.seed, short=True)
     clips = [replace(clip, name=clip.name.removeprefix(RANGE_OF_MOTION)) for clip in clips]  # they are the motion
     note = f"{character.name}: holds no animation; its motion is a built-in range of motion made for its rig"
     return clips, [f"{note}. --motion adds motion of your own."]
@@ -47,4 +48,5 @@ def planned_range(
 
 def range_frames(asked: int, own: int) -> int:
     """How many frames of the range are recorded where `asked` were asked for and the user's motion gives `own`."""
-    return max(asked // SHARE, min(asked - own, max(asked // SHORT_SHARE, FEWEST)), 1)
+    missing = min(asked - own, max(asked // SHORT_SHARE, FEWEST))
+    return max(asked // SHARE, min(asked // FEW_SHARE, FEW), missing, 1)

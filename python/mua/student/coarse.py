@@ -9,7 +9,7 @@ from mua.student.components import Components
 from mua.student.factorize import frame_weights, truncated_svd
 from mua.student.local import Parts, sample_locality
 from mua.student.model import Coarse
-from mua.student.regress import MESH, regress
+from mua.student.regress import MESH, SWUNG_MESH, regress
 from mua.student.settings import Settings
 from mua.training.optimise import Run
 
@@ -77,7 +77,7 @@ def fit_coarse(
         stage="coarse mesh",
         run=run,
         own=None if weights is None else weights == 1,
-        fit=MESH,
+        fit=MESH if settings.generalisation.own else SWUNG_MESH,
         generalisation=settings.generalisation,
     )
     coarse.mlp.load_state_dict(mlp.folded().state_dict())

@@ -31,7 +31,7 @@ from mua.training.checkpoint import Checkpoints, run_key
 from mua.training.optimise import Progress
 from mua.training.processes import ALONE, Processes
 
-RANGE_WEIGHT = 0.01  # weight of a frame of the built-in range of motion: bases are primarily for the user's motion
+RANGE_WEIGHT = 0.03  # weight of a frame of the built-in range of motion: bases are primarily for the user's motion
 GPU_SECONDS = 1.0  # seconds between queries of the GPU
 
 

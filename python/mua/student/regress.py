@@ -31,14 +31,15 @@ GENERALISATION = Generalisation()
 class Fit(NamedTuple):
     """How closely the function follows the frames, and whether the MLP is fine-tuned on them afterwards."""
 
-    beyond: float  # noise variance of frames beyond the user's motion: light follows the pose, cloth also its history
+    beyond: float  # noise variance of frames beyond the user's motion: small where they follow from the pose alone
     fades: bool  # whether the function fades to the mean of these frames; else to that of the user's
     own: float = RIDGE  # noise variance of what the user's frames show besides
     final: bool = False  # whether nothing fits the MLP to the frames afterwards
 
 
-CLOTH, LIGHT = Fit(10.0, fades=False), Fit(0.1, fades=True)
-MESH = Fit(10.0, fades=False, own=5e-4, final=True)
+POSED, SWUNG = Fit(0.1, fades=True), Fit(10.0, fades=False)  # light and cloth at rest; cloth that the range swings
+MESH = Fit(POSED.beyond, fades=False, own=5e-4, final=True)
+SWUNG_MESH = MESH._replace(beyond=SWUNG.beyond)
 
 
 def regress(
@@ -53,7 +54,7 @@ def regress(
     expand: Tensor | None = None,  # [K, M]
     locality: Locality | None = None,
     own: Tensor | None = None,  # [F] bool, the frames of the user's motion; None: all
-    fit: Fit = CLOTH,
+    fit: Fit = POSED,
     generalisation: Generalisation = GENERALISATION,
 ) -> Conditioned:
     """An MLP from components to targets, or to targets @ expand, fitted to the smooth function through them.
@@ -125,7 +126,7 @@ def fit_local(
     *,
     generator: torch.Generator,
     own: Tensor | None = None,  # [F] bool
-    fit: Fit = CLOTH,
+    fit: Fit = POSED,
 ) -> Smooth:
     """The smooth function of components through `goal`; with `locality` a sum over parts with views of their own."""
     z, back = components(inputs), components.back()

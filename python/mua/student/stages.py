@@ -20,7 +20,7 @@ from mua.student.local import Parts, texture_locality
 from mua.student.model import Branch, Student, lowpass_texels
 from mua.student.negligible import drop_negligible, freeze_channels
 from mua.student.paper_recipe import fit_branch_from_noise, fit_coarse_from_noise
-from mua.student.regress import CLOTH, LIGHT, regress
+from mua.student.regress import POSED, SWUNG, regress
 from mua.student.sensitivity import STAGE as SENSITIVITIES
 from mua.student.settings import Settings, StageName
 from mua.student.source import Source, hold
@@ -229,7 +229,7 @@ def fit_branch(
         expand=targets.expand,
         locality=local,
         own=None if frames is None else frames == 1,
-        fit=LIGHT if light else CLOTH,
+        fit=POSED if light or settings.generalisation.own else SWUNG,
         hidden=settings.hidden,
         schedule=settings.regression,
         stage=stage,

@@ -24,16 +24,18 @@ from mua.rig.character import Character
 from mua.rig.moving import moving_joints
 
 ROUND = 160  # frames recorded of all clips, after which another round of them shows more than more of these
-PLAYED = 10  # frames for each that is recorded, at most: a teacher plays them all
+PLAYED = 10  # frames for each that is recorded, at most
 UPRIGHT = 0.7  # cosine of the lean of a person's trunk in the bind pose
 STILL = np.radians(1)  # a joint whose rotation varies less in all clips is not moved by them
 
 
-def motion_range(character: Character, clips: Sequence[Clip], *, frames: int, seed: int) -> list[Clip]:
+def motion_range(
+    character: Character, clips: Sequence[Clip], *, frames: int, seed: int, short: bool = False
+) -> list[Clip]:
     """Clips of what the character's joints can do, as many as `frames` recorded frames show; the seed chooses them.
 
-    Joints that it does not move, and bones whose length the `clips` of the user set, are as these have them on the
-    average.
+    With `short`, clips are cut where so few frames are recorded that playing all of them would take most time. Joints
+    that it does not move, and bones whose length the `clips` of the user set, are as these have them on the average.
     """
     rng = np.random.default_rng(seed)
     skeleton, rest = character.skeleton, _rest(character.skeleton, clips)
@@ -44,16 +46,18 @@ def motion_range(character: Character, clips: Sequence[Clip], *, frames: int, se
         own = np.random.default_rng(rng.integers(2**63))
         if _is_person(skeleton, matches):
             extra = [j for j in _moved_by(clips, moving) if j != skeleton.root and j not in matches.chains]
-            clips_of_body = _shortened(_person(number, own), frames)
-            made += [_put_on(clip, skeleton, matches, rest, extra, own) for clip in clips_of_body]
+            found = _person(number, own)
+            found = _shortened(found, frames) if short else found
+            made += [_put_on(clip, skeleton, matches, rest, extra, own) for clip in found]
         else:
             joints = [int(joint) for joint in moving if joint != skeleton.root]
-            made += _shortened(_any_rig(skeleton, joints, rest, own), frames)
+            found = _any_rig(skeleton, joints, rest, own)
+            made += _shortened(found, frames) if short else found
     return unique_names([replace(clip, name=f"{RANGE_OF_MOTION}{clip.name}") for clip in made])
 
 
 def _shortened(clips: Sequence[Clip], frames: int) -> list[Clip]:
-    """The beginnings of clips, where so few `frames` are recorded that playing all of them would take most time."""
+    """The beginnings of clips, of which PLAYED frames are played for each recorded one, or all of them."""
     share = min(PLAYED * frames / sum(len(clip) for clip in clips), 1.0)
     return [clip.cut(slice(max(round(share * len(clip)), 1))) for clip in clips]
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from mua import rotation
 from mua.arrays import Array
-from mua.pose.clip import Clip
+from mua.pose.clip import Clip, is_range
 from mua.pose.descriptor import heading_of
 from mua.pose.skeleton import Pose
 from mua.rig.bones import figure_scale
@@ -41,7 +41,14 @@ class SimulatedTeacher(StillTeacher):
         self._longer = low_pass(mesh.vertices, mesh.faces, COARSE_WAVELENGTH * figure_scale(mesh.vertices))
 
     def frames(self, clip: Clip, wanted: Container[int]) -> Iterator[TeacherFrame | Pose]:
-        """Simulate `clip` from rest in its first pose; yield whole frames where wanted, else poses."""
+        """Simulate `clip` from rest in its first pose; yield whole frames where wanted, else poses.
+
+        Of the built-in range of motion nothing is simulated: its frames show what follows from the pose alone.
+        """
+        if is_range(clip.name):
+            poses = map(clip.pose, range(len(clip)))
+            yield from (self.frame(pose) if frame in wanted else pose for frame, pose in enumerate(poses))
+            return
         for frame, moved in enumerate(self._moving.frames(clip)):
             pose = Pose(clip.rotations[frame], clip.translations[frame])
             yield self._whole(pose, moved) if frame in wanted else pose
