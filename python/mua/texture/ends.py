@@ -16,7 +16,7 @@ from mua.texture.footprints import Samples
 EDGE = 1.2  # standard deviations from its centre at which a surfel is about half opaque: its outline
 AWAY = 0.4  # distance of the outline from the surface over that from the centre: less would open round or layered parts
 LEAST = 0.25  # of its reach to one side that a surfel keeps
-TURNED = 0.5  # cosine between surfel and surface from which that is its own: over a crease, not around a hem
+TURNED = 0.8  # cosine between surfel and surface from which that is its own: over a crease, not around a hem
 HALVINGS = 4  # of the range in which the outline is sought
 NEAREST = 3, 24  # triangles among which the nearest point is sought, at first and where that is far
 APART = 10.0  # times the surface's size, between its pieces in the space in which the nearest triangles are sought
