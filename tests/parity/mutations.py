@@ -365,7 +365,7 @@ FAULTS = {
         drawn("tints of the other eye", "eye == 0 ? tint : -tint", "eye == 0 ? -tint : tint"),
         drawn("one scale for all colours", "float(1u << exponent)", "1.0"),
         drawn("opacity of ten bits", "OPACITY_STEPS = 2047", "OPACITY_STEPS = 1023"),
-        drawn("vertex of the neighbouring splat", "order[vertex / 6]", "order[(vertex + 1) / 6]"),
+        drawn("vertex of the neighbouring splat", "order[place]", "order[place + 1]"),
         drawn(
             "ellipse turned the wrong way",
             "dot(axis, corner) * axis",

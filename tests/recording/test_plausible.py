@@ -192,7 +192,7 @@ UNSURE: dict[str, tuple[Callable[[TeacherFrame], TeacherFrame], str]] = {
     "invisible splats": (lambda f: channels(f, SCALE, lambda s: s - 8), "are these logarithms right?"),
     "offsets in centimetres": (
         lambda f: channels(f, OFFSET, lambda o: 0.3 * o / np.median(np.linalg.norm(o, axis=1))),
-        "half of all offsets are longer than 0.301 m, .* are these centimetres or millimetres?",
+        "half of all offsets are longer than 0.3 m, .* are these centimetres or millimetres?",
     ),
     "scales of small splats to base 10": (
         lambda f: channels(channels(f, SCALE, np.zeros_like), SCALE, lambda s: s + np.log10(0.007)),

@@ -140,8 +140,9 @@ def bake(
         baked = mua.bake("hero.glb", motion="walks", preset="tiny", output="hero.muaavatar")
         baked.errors["training"].explained("SH")
     """
-    settings = read_settings(locals())
+    given = locals()
     with naming_extras("mua.bake"):
+        settings = read_settings(given)
         from mua.baking import pipeline  # seconds of loading: only once the options are known to be good
 
         return pipeline.bake(settings, listener or Log())

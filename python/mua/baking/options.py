@@ -17,8 +17,6 @@ from mua.files.inputs import is_capture, require_file, require_motion, require_t
 from mua.files.write import missing_directory
 from mua.motion.formats import require_format
 from mua.motion.mapping import read_mapping
-from mua.student.budget import within_budget
-from mua.student.outline import Body
 from mua.student.settings import Budget, Settings, preset, with_recipe
 from mua.teachers.trained.settings import teacher_preset
 
@@ -43,7 +41,7 @@ def bake_settings(options: Mapping[str, Any]) -> BakeSettings:
     )
     if settings.teacher is None and (settings.character is None or not is_capture(settings.character)):
         check_inputs(settings.character, settings.motions)
-        within_budget(settings.student, Body(), settings.storage)  # before anything is recorded
+        _check_budget(settings)
     else:
         settings = _with_trained_teacher(settings, options)
     check_output(settings.output, settings.work)
@@ -64,6 +62,14 @@ def _check_motion_options(settings: BakeSettings) -> None:
     for name, given in (("--mapping", settings.mapping is not None), ("--feet plant", settings.feet == "plant")):
         if given and not settings.motions:
             raise InputError(f"{name}: works only with --motion, which is not given")
+
+
+def _check_budget(settings: BakeSettings) -> None:
+    """Raises InputError where no student of any body is so small, before anything is recorded."""
+    from mua.student.budget import within_budget  # which reads wavelets: a missing extra is named first
+    from mua.student.outline import Body
+
+    within_budget(settings.student, Body(), settings.storage)
 
 
 def _with_trained_teacher(settings: BakeSettings, options: Mapping[str, Any]) -> BakeSettings:

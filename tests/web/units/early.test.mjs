@@ -31,6 +31,7 @@ function deviceWith(keys, { lost = false } = {}) {
     sortedCount: keys.length,
     order: "order",
     arguments: "arguments",
+    corners: 3,
   };
   return {
     device: { gpu, write: (buffer, content) => noted.written.push([buffer, Array.from(content)]) },
@@ -59,6 +60,6 @@ test("the device draws as many splats as are in order", () => {
   writeOrder(device, splats, Uint32Array.of(2, 0, 3));
   assert.deepEqual(noted.written, [
     ["order", [2, 0, 3]],
-    ["arguments", [18, 1, 0, 0, 3]],
+    ["arguments", [9, 1, 0, 0, 3]],
   ]);
 });
