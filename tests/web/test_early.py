@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from web.browser import Page
-from web.test_engine import Open, load, opened, small
+from web.engine import Open, load, opened, small
 from web.test_modules import node, pytestmark
 
 from mua.arrays import Array

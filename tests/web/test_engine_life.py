@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from web.browser import Browser, Page, Serve
 from web.conftest import PLAIN
+from web.engine import Open, load, opened, screenshot, small
 from web.pages import COUNTED, LOSABLE
-from web.test_engine import Open, load, opened, screenshot, small
 
 from mua.share.site import Site, player_files
 

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from web.browser import Page
+from web.engine import FULL, LEAST_PSNR, SHOWN, Open, load, opened, psnr, show, small
 from web.pages import LOSABLE
-from web.test_engine import FULL, LEAST_PSNR, SHOWN, Open, load, opened, psnr, show, small
 
 from mua.arrays import Array
 from mua.asset.read import read
