@@ -124,9 +124,12 @@ def test_the_picture_agrees_with_the_cpu_rasteriser(crowd: Crowd) -> None:
         assert psnr(found, render_premultiplied(crowd.exact, camera)) > LEAST_PSNR
 
 
+@pytest.mark.parametrize("eyes", [1, 2])
 @pytest.mark.parametrize("size", [16, 256])
-def test_small_splats_are_triangles_large_ones_quads_and_both_make_the_same_picture(crowd: Crowd, size: int) -> None:
-    device, corners = crowd.device, 3 if size == 16 else 6
+def test_small_splats_are_triangles_large_ones_quads_and_both_make_the_same_picture(
+    device: Device, tmp_path: Path, size: int, eyes: int
+) -> None:
+    crowd, corners = Crowd(device, tmp_path, three(), eyes=eyes), 3 if size == 16 else 6
     cameras = tuple(replace(camera, screen=(size, size)) for camera in crowd.cameras)
     commands = device.commands()
     crowd.frame.sort(commands, cameras)
