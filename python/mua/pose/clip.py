@@ -33,6 +33,7 @@ class Clip:
     rotations: Array  # [F, J, 4] local joint rotations, unit, wxyz
     translations: Array  # [F, J, 3] local joint translations, metres
     stretches: Stretches | None = field(default=None, kw_only=True)
+    expressions: Array | None = field(default=None, kw_only=True)  # [F, E] weights, 0 to 1; None: all 0
 
     def __len__(self) -> int:
         return len(self.rotations)
@@ -45,25 +46,46 @@ class Clip:
         """The pose of a frame, counted from 0; raises InputError where there is none."""
         if not 0 <= whole_number(index, "frame") < len(self):
             raise InputError(f"frame is {index}; clip {self.name!r} has frames 0 to {len(self) - 1}")
-        return Pose(self.rotations[index], self.translations[index])
+        weights = None if self.expressions is None else self.expressions[index]
+        return Pose(self.rotations[index], self.translations[index], weights)
 
     def cut(self, frames: slice | Array) -> Self:
         """The clip with these frames alone."""
         kept = self.stretches
         stretches = None if kept is None else replace(kept, matrices=kept.matrices[frames])
         return replace(
-            self, rotations=self.rotations[frames], translations=self.translations[frames], stretches=stretches
+            self,
+            rotations=self.rotations[frames],
+            translations=self.translations[frames],
+            stretches=stretches,
+            expressions=None if self.expressions is None else self.expressions[frames],
         )
 
     def then(self, other: "Clip") -> Self:
-        """This clip followed by `other`, which has the same skeleton and stretched joints, under this name."""
+        """This clip followed by `other`, of the same skeleton, stretched joints and expressions, under this name."""
         stretches = self.stretches
         if stretches is not None and other.stretches is not None:
             matrices = np.concatenate([stretches.matrices, other.stretches.matrices])
             stretches = replace(stretches, matrices=matrices)
         rotations = np.concatenate([self.rotations, other.rotations])
         translations = np.concatenate([self.translations, other.translations])
-        return replace(self, rotations=rotations, translations=translations, stretches=stretches)
+        return replace(
+            self,
+            rotations=rotations,
+            translations=translations,
+            stretches=stretches,
+            expressions=_followed(self, other),
+        )
+
+
+def _followed(first: Clip, second: Clip) -> Array | None:
+    """The weights [F, E] of two clips one after the other; those of a clip that states none are 0."""
+    stated = [clip.expressions for clip in (first, second) if clip.expressions is not None]
+    if not stated:
+        return None
+    count = stated[0].shape[1]
+    weights = [np.zeros((len(c), count)) if c.expressions is None else c.expressions for c in (first, second)]
+    return np.concatenate(weights)
 
 
 def is_range(name: str) -> bool:

@@ -11,10 +11,11 @@ from mua.arrays import Array
 
 @dataclass(frozen=True, eq=False)
 class Pose:
-    """One moment of a skeleton: the motion of each joint relative to its parent."""
+    """One moment of a character: each joint relative to its parent, and the weights of its expressions."""
 
     rotations: Array  # [J, 4] local joint rotations, unit, wxyz
     translations: Array  # [J, 3] local joint translations, metres
+    expressions: Array | None = None  # [E] weights, 0 to 1 (mua.rig.expressions); None: all 0
 
 
 @dataclass(frozen=True, eq=False)

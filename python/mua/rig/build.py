@@ -19,5 +19,6 @@ def build_rig(character: Character, *, texels: int, template_vertices: int = 500
         skin_indices=template.skin_indices,
         skin_weights=template.skin_weights,
         texels=bind_texels(character, template, size=texels).kept,
+        expressions=None if character.expressions is None else character.expressions.at(template.source_vertices),
     )
     return rig, template.source_vertices

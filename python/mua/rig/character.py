@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from mua.arrays import Array
 from mua.pose.clip import Clip
 from mua.pose.skeleton import Skeleton
+from mua.rig.expressions import Expressions
 from mua.scene import Source
 
 
@@ -37,3 +38,4 @@ class Character:
     notes: tuple[str, ...] = field(default=())  # the reader's decisions that a user should know, a sentence each
     source: Source | None = None  # content of the file, to compare with; None: no file, or nothing to compare
     roles: Mapping[str, str] = field(default_factory=dict)  # joint to body part, where the file states it
+    expressions: Expressions | None = None  # over the vertices of `mesh`; None: the character has none

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from mua.arrays import Array
 from mua.pose.skeleton import Skeleton
 from mua.rig.character import Mesh
+from mua.rig.expressions import Expressions
 from mua.rig.texel_map import TexelMap
 
 
@@ -17,3 +18,4 @@ class Rig:
     skin_indices: Array  # [V, 8] int32
     skin_weights: Array  # [V, 8] float32, rows sum to 1
     texels: TexelMap
+    expressions: Expressions | None = None  # over the vertices of the template; None: the character has none

@@ -1,0 +1,53 @@
+"""Expressions: what moves a face besides its joints, as linear targets over the vertices of a mesh."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mua.arrays import Array
+
+
+@dataclass(frozen=True, eq=False)
+class Expressions:
+    """For each expression, how far its whole weight 1 moves some vertices in the bind pose (linear blendshapes).
+
+    Weights are 0 to 1; vertices that none names stay exactly where they are.
+    """
+
+    names: tuple[str, ...]  # [E] as in the file that they come from, no two equal
+    starts: Array  # [E + 1] int32 into the entries: those of expression e are starts[e] to starts[e + 1] - 1
+    vertices: Array  # [P] int32 of the mesh, ascending within an expression
+    offsets: Array  # [P, 3] float32, metres
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+    def displacement(
+        self,
+        weights: Array,  # [E]
+        *,
+        vertices: int,
+    ) -> Array:
+        """How far [V, 3] the weights move the vertices of the mesh, metres."""
+        moved = np.zeros((vertices, 3), dtype=np.result_type(weights, np.float32))
+        np.add.at(moved, self.vertices, np.repeat(weights, np.diff(self.starts))[:, None] * self.offsets)
+        return moved
+
+    def at(
+        self,
+        kept: Array,  # [T] int, vertices of the mesh, each at most once
+    ) -> "Expressions":
+        """These expressions on a mesh that has some of the vertices, in another order."""
+        row = np.full(max(self.vertices.max(initial=-1), kept.max(initial=-1)) + 1, -1)
+        row[kept] = np.arange(len(kept))
+        expression = np.repeat(np.arange(len(self)), np.diff(self.starts))
+        at = row[self.vertices]
+        order = np.lexsort((at, expression))
+        order = order[at[order] >= 0]
+        counts = np.bincount(expression[order], minlength=len(self))
+        return Expressions(
+            names=self.names,
+            starts=np.concatenate([[0], np.cumsum(counts)]).astype(np.int32),
+            vertices=at[order].astype(np.int32),
+            offsets=self.offsets[order],
+        )
