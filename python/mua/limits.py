@@ -1,12 +1,12 @@
 """Numbers of the format that its readers share; tools/gen_layout.py writes them for C# and JavaScript."""
 
-MAJOR, MINOR = 1, 0  # version
+MAJOR, MINOR = 1, 1  # version
 MAX_RANK = 4  # sides of a tensor
 LARGEST = 65504.0  # largest magnitude of any real: f16's largest
 UNPACKED_TIMES, UNPACKED_ROOM = 16, 1 << 20  # bytes that packed tensors give, for each of the file, and beside
 STAGES = 5
 
-MAX_JOINTS, MAX_LAYERS, MAX_CLIPS = 4096, 64, 4096
+MAX_JOINTS, MAX_LAYERS, MAX_CLIPS, MAX_EXPRESSIONS = 4096, 64, 4096, 1024
 MAX_LEVELS = 8  # levels of the wavelet
 MAX_SIDE = 4096  # texels along a side of the texture
 TEXTURE_TIMES, TEXTURE_ROOM = 16, 1 << 16  # texels of the texture for each valid one, and beside
@@ -24,6 +24,8 @@ LARGEST_TAP = 16.0  # the taps of PyWavelets' wavelets stay below 5
 MAX_WINDOW = 16  # frames
 LEAST_RATE, LARGEST_RATE = 1.0, 1000.0  # frames per second
 MAX_FRAMES = 1 << 20  # frames of a clip at the encoding's rate: 9 hours at 30 frames per second
-MAX_ADDED = 1 << 24  # joints in all frames that clips gain at the encoding's rate: 46 minutes of 100, 30 to 90 Hz
+MAX_ADDED = (
+    1 << 24
+)  # joints and weights in all frames that clips gain at the encoding's rate: 46 minutes of 100, 30 to 90 Hz
 LEAST_SCALE = 1e-6  # least scale of a descriptor's number: a thousandth of a person's unit, for a figure 2 mm high
 MAGNITUDE = 2.0**62  # bound of decoded values: the squares of four such numbers have a finite sum in single precision

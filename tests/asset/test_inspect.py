@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from commands import Ended, process
-from synthetic_avatar import synthetic_avatar
+from synthetic_avatar import synthetic_avatar, with_expressions
 
 from mua.asset import write
 from mua.asset.read import load, read
@@ -59,7 +59,7 @@ def test_json_holds_all_that_the_tables_show_and_the_names_that_the_guide_lists(
     table = "".join(line for line in guide.splitlines() if line.startswith("| `"))
     for name, value in held.items():
         assert f"`{name}`" in table or f"`{name}." in table, name
-        for inner in value if isinstance(value, dict) else value[0] if isinstance(value, list) else ():
+        for inner in value if isinstance(value, dict) else value[0] if name == "clips" else ():
             assert f"{inner}`" in table, inner
     assert held["skeleton"] == {"joints": ["root", "middle", "tip"], "root": "root"}
     assert held["clips"] == [{"name": "wave", "frames": 7, "rate": 24.0, "seconds": 7 / 24}]
@@ -70,11 +70,20 @@ def test_json_holds_all_that_the_tables_show_and_the_names_that_the_guide_lists(
         assert f"{number:,}" in shown
 
 
+def test_expressions_are_named(tmp_path: Path) -> None:
+    path = tmp_path / "face.muaavatar"
+    write(path, with_expressions(synthetic_avatar()))
+    held = json.loads(inspect("--json", path).out)
+    assert held["expressions"] == ["jawOpen", "eyeBlinkLeft", "nothing", "Mund auf"]
+    assert held["bytes_by_part"]["expressions"] == 4 * (5 + 7) + 2 * 3 * 7 + 4 * 4 * 3  # entries, offsets, shapes
+    assert "4: jawOpen, eyeBlinkLeft, nothing, Mund auf" in inspect(path).out
+
+
 def test_a_packed_file_shows_what_it_holds_packed_and_unpacked(tmp_path: Path) -> None:
     path = tmp_path / "packed.muaavatar"
     write(path, synthetic_avatar(), storage="packed")
     held = json.loads(inspect("--json", path).out)
-    assert (held["format"], held["storage"]) == ("1.0", "packed")
+    assert (held["format"], held["storage"]) == ("1.1", "packed")
     assert all(held["bytes_by_part"][part] <= size for part, size in held["unpacked_bytes_by_part"].items())
     assert sum(held["bytes_by_part"].values()) < held["bytes"] < sum(held["unpacked_bytes_by_part"].values())
     shown = inspect(path).out

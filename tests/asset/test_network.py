@@ -1,11 +1,19 @@
 """A file for the network: what stands where in it, what is left out of it, and who reads it."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
-from synthetic_avatar import empty_avatar, sample_avatar, synthetic_avatar, with_surface
+from synthetic_avatar import (
+    empty_avatar,
+    expressive_avatar,
+    sample_avatar,
+    synthetic_avatar,
+    with_expressions,
+    with_surface,
+)
 
 from mua.asset.avatar import Avatar
 from mua.asset.flatbuffer import parse
@@ -15,13 +23,13 @@ from mua.asset.tensors import pack, pack_indices, stored
 from mua.asset.write import encode
 from mua.avatar.decode import decode_clip_frame
 
-GOLDEN = Path(__file__).parents[1] / "golden" / "packed.muaavatar"
+GOLDEN = Path(__file__).parents[1] / "golden"
 BARYCENTRIC = 1e-4  # of a triangle: as near as the writer lets a reader compute it
 ORDER = ("skeleton", "texels", "details", "static_offset", "clips[1]")  # one part of each stage
 
 
 def two_clips() -> Avatar:
-    avatar = with_surface(synthetic_avatar())
+    avatar = with_surface(with_expressions(synthetic_avatar()))
     return replace(
         avatar, clips=(avatar.clips[0], replace(avatar.clips[0], name="again")), thumbnail=b"\x89PNG\r\n\x1a\n"
     )
@@ -123,10 +131,10 @@ def test_a_stage_decodes_before_the_rest_is_there(content: bytes) -> None:
     end = int(parse(content)["stages"][1])
     tree = parse(content[:end] + bytes(len(content) - end))
     for path, tensor in tensors(tree):
-        if "details" in path or "static_offset" in path or path.startswith(("clips[1]", "surface")):
+        if "details" in path or "static_offset" in path or path.startswith(("clips[1]", "surface", "expressions")):
             tensor |= {**pack(np.zeros(tensor["shape"]), "f16"), "packing": "Plain"}
     tree["clips"] = tree["clips"][:1]
-    del tree["surface"]
+    del tree["surface"], tree["expressions"], tree["clips"][0]["expressions"]
     unpack(tree, len(content))
     early, whole = decode_tree(tree), decode_tree(parse_checked(content))
     np.testing.assert_array_equal(early.coarse.basis, whole.coarse.basis)
@@ -135,10 +143,11 @@ def test_a_stage_decodes_before_the_rest_is_there(content: bytes) -> None:
     assert np.isfinite(decode_clip_frame(early, early.clips[0], frame=2).centres).all()
 
 
-def test_a_kept_packed_file_reads_as_when_it_was_written() -> None:
+@pytest.mark.parametrize(("name", "made_by"), [("packed", sample_avatar), ("expressions", expressive_avatar)])
+def test_a_kept_packed_file_reads_as_when_it_was_written(name: str, made_by: Callable[[], Avatar]) -> None:
     """Its streams are those of the zlib that wrote them; the numbers are those of any."""
-    kept = dict(tensors(parse_checked(GOLDEN.read_bytes())))
-    made = dict(tensors(parse_checked(encode(sample_avatar(), storage="packed"))))
+    kept = dict(tensors(parse_checked((GOLDEN / f"{name}.muaavatar").read_bytes())))
+    made = dict(tensors(parse_checked(encode(made_by(), storage="packed"))))
     assert kept.keys() == made.keys()
     for path, tensor in made.items():
         np.testing.assert_array_equal(stored(kept[path], path), stored(tensor, path), err_msg=path)

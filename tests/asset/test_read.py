@@ -8,14 +8,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 from damaged import DAMAGED
-from malformed import MALFORMED, flipped, malformed, seal_unread, times
-from synthetic_avatar import synthetic_avatar, with_surface
+from malformed import EXPRESSIVE, MALFORMED, flipped, malformed, seal_unread, times
+from synthetic_avatar import synthetic_avatar, with_expressions, with_surface
 from unpackable import UNPACKABLE
 
 from mua.asset.flatbuffer import FormatError, Tree, parse
 from mua.asset.read import decode_tree, parse_checked, read
 from mua.asset.sizes import require_sizes
-from mua.asset.tensors import pack, pack_indices
+from mua.asset.tensors import Storage, pack, pack_indices
 from mua.asset.write import encode
 from mua.errors import InputError
 
@@ -86,6 +86,41 @@ def test_malformed_field_is_named(content: bytes, code: str, field: str, edit: C
     with pytest.raises(FormatError) as caught:
         decode(malformed(content, edit))
     assert (caught.value.code, caught.value.field) == (code, field)
+
+
+@pytest.mark.parametrize(
+    ("code", "field", "edit"), EXPRESSIVE, ids=lambda value: value if isinstance(value, str) else ""
+)
+@pytest.mark.parametrize("storage", ["f32", "f16"])
+def test_malformed_expression_is_named(storage: Storage, code: str, field: str, edit: Callable[[Tree], None]) -> None:
+    with pytest.raises(FormatError) as caught:
+        decode(malformed(encode(with_expressions(synthetic_avatar()), storage=storage), edit))
+    assert (caught.value.code, caught.value.field) == (code, field)
+
+
+@pytest.mark.parametrize(("expressions", "sound"), [(1, True), (600, False)])
+def test_weights_count_among_what_clips_gain(expressions: int, sound: bool) -> None:
+    """Frames enough that 3 joints of each stay within 2^24 at a thousand times the clip's rate, and 603 do not."""
+
+    def edit(tree: Tree) -> None:
+        clip, frames = tree["clips"][0], 40
+        tree["encoding"]["rate"], clip["rate"] = 1000.0, 1.0
+        for name in ("rotations", "translation", "translations"):
+            whole = np.resize(clip[name]["data"].view("<f4"), (frames, *clip[name]["shape"][1:]))
+            clip[name] = pack(whole)
+        tree["expressions"]["names"] = [f"{n}" for n in range(expressions)]
+        tree["expressions"] |= {
+            "starts": pack_indices(np.zeros(expressions + 1)),
+            "vertices": pack_indices(np.zeros(0)),
+        }
+        tree["expressions"]["offsets"], clip["expressions"] = (
+            pack(np.zeros((0, 3))),
+            pack(np.ones((frames, expressions))),
+        )
+
+    content = malformed(encode(with_expressions(synthetic_avatar()), storage="f32"), edit)
+    with nullcontext() if sound else pytest.raises(FormatError, match="too many for the encoding's rate"):
+        decode(content)
 
 
 @pytest.mark.parametrize(

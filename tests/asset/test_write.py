@@ -9,7 +9,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from synthetic_avatar import sparse_avatar, synthetic_avatar, with_one_sided, with_surface, with_texels
+from synthetic_avatar import (
+    sparse_avatar,
+    synthetic_avatar,
+    with_expressions,
+    with_one_sided,
+    with_surface,
+    with_texels,
+)
 
 from mua.arrays import Array
 from mua.asset.flatbuffer import parse
@@ -18,6 +25,7 @@ from mua.asset.tensors import Storage, stored
 from mua.asset.write import encode, write
 from mua.avatar.coarser import with_levels
 from mua.errors import InputError
+from mua.rig.expressions import Expressions
 
 ROOT = Path(__file__).resolve().parents[2]
 GOLDEN = ROOT / "tests" / "golden" / "synthetic.muaavatar"
@@ -44,7 +52,7 @@ def tensors(avatar: object) -> dict[str, Array]:
 
 
 def test_f32_file_returns_every_array_as_float32() -> None:
-    avatar = with_levels(synthetic_avatar())
+    avatar = with_levels(with_expressions(synthetic_avatar()))
     back = tensors(decode_tree(parse_checked(encode(avatar, storage="f32"))))
     assert set(back) == set(tensors(avatar))
     assert back
@@ -150,7 +158,7 @@ def test_which_texels_are_one_sided_comes_back(count: int, storage: Storage) -> 
 def test_every_file_says_the_one_version(storage: Storage) -> None:
     for avatar in (synthetic_avatar(), sparse_avatar(0)):
         tree = parse(encode(avatar, storage=storage))
-        assert (tree["version_major"], tree["version_minor"]) == (1, 0)
+        assert (tree["version_major"], tree["version_minor"]) == (1, 1)
 
 
 @pytest.mark.parametrize(("storage", "kind"), [("f32", "F32"), ("f16", "F16"), ("i8", "F16"), ("packed", "F16")])
@@ -181,6 +189,29 @@ def test_a_joint_that_one_clip_translates_is_stored_for_all(tmp_path: Path) -> N
         np.testing.assert_array_equal(found.translations, expected.translations.astype(np.float32))
 
 
+@pytest.mark.parametrize("storage", ["f32", "f16", "i8", "packed"])
+def test_expressions_come_back_up_to_storage(storage: Storage) -> None:
+    avatar = with_expressions(synthetic_avatar())
+    found = decode_tree(parse_checked(encode(avatar, storage=storage)))
+    step = 2.0**-14 if storage == "packed" else 0  # metres, of the offsets; those of the fixture are f16 already
+    assert found.expressions == avatar.expressions
+    ours, theirs = avatar.rig.expressions, found.rig.expressions
+    assert ours
+    assert theirs
+    np.testing.assert_array_equal(theirs.starts, ours.starts)
+    np.testing.assert_array_equal(theirs.vertices, ours.vertices)
+    np.testing.assert_allclose(theirs.offsets, ours.offsets, rtol=0, atol=step)
+    np.testing.assert_array_equal(found.clips[0].expressions, avatar.clips[0].expressions)
+
+
+def test_what_has_no_expressions_stores_none() -> None:
+    still = dataclasses.replace(synthetic_avatar().clips[0], expressions=np.zeros((7, 4)))
+    tree = parse(encode(dataclasses.replace(with_expressions(synthetic_avatar()), clips=(still,))))
+    assert "expressions" not in tree["clips"][0]
+    tree = parse(encode(synthetic_avatar()))
+    assert "expressions" not in tree
+
+
 def test_a_joint_that_the_descriptor_alone_tells_of_is_stored_as_translated() -> None:
     """As where the clips that moved it were left out."""
     avatar = synthetic_avatar()
@@ -206,7 +237,13 @@ def test_refused_avatar_leaves_the_earlier_file(tmp_path: Path) -> None:
 def test_refuses_names_that_no_reader_takes(tmp_path: Path) -> None:
     avatar = synthetic_avatar()
     clip = dataclasses.replace(avatar.clips[0], name="wa\x1blk")
-    for broken, named in (({"name": "he\x07ro"}, "its name 'he"), ({"clips": (clip,)}, "the clip 'wa")):
+    nothing = np.zeros(0, np.int32)
+    rig = replace(avatar.rig, expressions=Expressions(("jaw\n",), np.zeros(2, np.int32), nothing, np.zeros((0, 3))))
+    for broken, named in (
+        ({"name": "he\x07ro"}, "its name 'he"),
+        ({"clips": (clip,)}, "the clip 'wa"),
+        ({"rig": rig}, "the expression 'jaw"),
+    ):
         with pytest.raises(InputError, match=f"{named}.*has the control character U"):
             write(tmp_path / "a.muaavatar", dataclasses.replace(avatar, **broken))
     assert list(tmp_path.iterdir()) == []

@@ -12,6 +12,7 @@ from oracle.quaternions import multiply, normalise, rotate
 class Pose:
     rotations: Array  # l [J, 4]
     translations: Array  # t [J, 3] metres
+    weights: Array | None = None  # w [E] of section 12; none: all 0
 
 
 def bind_pose(skeleton: Record) -> Pose:
@@ -25,7 +26,7 @@ def stored_pose(skeleton: Record, clip: Record, n: int) -> Pose:
     translations[skeleton.root] = clip.translation[n]
     if skeleton.translated is not None:
         translations[skeleton.translated] = clip.translations[n]
-    return Pose(normalise(clip.rotations[n]), translations)
+    return Pose(normalise(clip.rotations[n]), translations, None if clip.expressions is None else clip.expressions[n])
 
 
 def poses(avatar: Record, clip: Record) -> list[Pose]:
@@ -43,7 +44,8 @@ def between(stored: list[Pose], u: float) -> Pose:
     sines = np.sin([(1 - s) * angle, s * angle]) / np.maximum(np.sin(angle), 1e-12)
     weights = np.where(angle < 1e-6, np.reshape([1 - s, s], (2, 1, 1)), sines)
     rotations = weights[0] * first.rotations + weights[1] * np.where(cosine < 0, -1, 1) * second.rotations
-    return Pose(normalise(rotations), (1 - s) * first.translations + s * second.translations)
+    held = None if first.weights is None or second.weights is None else (1 - s) * first.weights + s * second.weights
+    return Pose(normalise(rotations), (1 - s) * first.translations + s * second.translations, held)
 
 
 def in_the_world(skeleton: Record, pose: Pose) -> tuple[Array, Array]:

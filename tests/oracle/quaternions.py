@@ -53,3 +53,18 @@ def six(q: Array) -> Array:
     w, x, y, z = np.moveaxis(q, -1, 0)
     first = [1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)]
     return np.stack([*first, 2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)], axis=-1)
+
+
+def columns(q: Array) -> Array:
+    """12.3: the columns of 3.3 and their cross product, as a matrix [3, 3]."""
+    first, second = np.split(six(q), 2)
+    return np.column_stack([first, second, np.cross(first, second)])
+
+
+def from_columns(r: Array) -> Array:
+    """12.3: the unit quaternion [4] of a rotation matrix [3, 3], w >= 0: an eigenvector of sums of its elements."""
+    (a, b, c), (d, e, f), (g, h, i) = r
+    w, x = [a + e + i, h - f, c - g, d - b], [h - f, a - e - i, b + d, c + g]
+    y, z = [c - g, b + d, e - a - i, f + h], [d - b, c + g, f + h, i - a - e]
+    q = np.linalg.eigh(np.array([w, x, y, z]))[1][:, -1]
+    return -q if q[0] < 0 else q

@@ -1,6 +1,7 @@
 """What every section makes of one frame of the worked sample: PYTHONPATH=tests python -m oracle.sample.
 
-A line is the section, a name, the sides, the sum of all magnitudes and the first four numbers.
+A line is the section, a name, the sides, the sum of all magnitudes and the first four numbers. Section 12 is of the
+same avatar with expressions.
 """
 
 import sys
@@ -9,18 +10,19 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from oracle import descriptor, drawing, motion, splats, surface, texture
+from oracle import descriptor, drawing, expressions, motion, splats, surface, texture
 from oracle.file import Record, load
 
 SAMPLE = Path(__file__).resolve().parents[1] / "golden" / "packed.muaavatar"
+SPOKEN = SAMPLE.with_name("expressions.muaavatar")
 FRAME = 3  # a frame of the first clip at the rate of the encoding
 VIEW = np.array([[1, 0, 0, -0.5], [0, 1, 0, -1], [0, 0, 1, -3], [0, 0, 0, 1]])  # from (0.5, 1, 3) along -Z
 PROJECTION = np.array([[3, 0, 0.1, 0], [0, 4, -0.2, 0], [0, 0, -1, -0.2], [0, 0, -1, 0]])
 CAMERA = drawing.Camera(VIEW, PROJECTION, near=0.1, screen=(64, 48))
 
 
-def lines(avatar: Record) -> Iterator[str]:
-    for section, name, value in numbers(avatar):
+def lines(avatar: Record, spoken: Record) -> Iterator[str]:
+    for section, name, value in (*numbers(avatar), *of_expressions(spoken)):
         array = np.atleast_1d(np.asarray(value, np.float64))
         sides, first = " x ".join(map(str, array.shape)), " ".join(f"{number:g}" for number in array.flat[:4])
         yield f"{section:4} {name:34} {sides:14} {np.abs(array).sum():g} | {first}"
@@ -73,5 +75,15 @@ def numbers(avatar: Record) -> Iterator[tuple[str, str, Any]]:
         yield "9.4", f"T of level {number}", found.texture
 
 
+def of_expressions(avatar: Record) -> Iterator[tuple[str, str, Any]]:
+    pose = motion.poses(avatar, avatar.clips[0])[FRAME]
+    yield "12", f"w of frame {FRAME}", pose.weights
+    yield "12.1", "m", expressions.moved(avatar, pose)
+    for number in range(1 + len(avatar.texels.levels)):
+        found = splats.decode(avatar, motion.poses(avatar, avatar.clips[0]), FRAME, number)
+        yield "12.3", f"T of level {number}", found.texture
+        yield "12.3", f"centres of level {number}", found.centres
+
+
 if __name__ == "__main__":
-    sys.stdout.write("".join(f"{line}\n" for line in lines(load(SAMPLE))))
+    sys.stdout.write("".join(f"{line}\n" for line in lines(load(SAMPLE), load(SPOKEN))))

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from oracle import descriptor, texture
+from oracle import descriptor, expressions, texture
 from oracle.file import Array, Record
 from oracle.motion import Pose, bind_pose, in_the_world
 from oracle.quaternions import apply, compose, conjugate, multiply, normalise, rigid, rotate
@@ -15,11 +15,11 @@ C0, C1 = 1 / (2 * np.sqrt(np.pi)), np.sqrt(3 / (4 * np.pi))
 @dataclass(frozen=True)
 class Splats:
     texels: Texels
-    canonical: Array  # v [V, 3]
+    canonical: Array  # v [V, 3], v' of section 12
     joints: Array  # K [J, 8]
     vertices: Array  # [V, 8] dual quaternions
     motions: Array  # Q [N, 8]
-    texture: Array  # T [N, 23]
+    texture: Array  # T [N, 23], that of section 12
     centres: Array  # [N, 3] metres
     rotations: Array  # [N, 4]
     scales: Array  # [N, 3] standard deviations, metres
@@ -46,6 +46,8 @@ def decode(avatar: Record, poses: list[Pose], n: int, level: int = 0) -> Splats:
     d = descriptor.describe(avatar, poses, n)
     x = descriptor.bound(avatar.encoding, descriptor.components(avatar.encoding, d))
     v, t = texture.canonical_vertices(avatar.coarse, x), texture.at_texels(avatar, x, texels, level)
+    moved = expressions.moved(avatar, poses[n])
+    v, t = v + moved, expressions.bend(t, texels.corners, v, moved)
     turns, places = in_the_world(skeleton, poses[n])
     joints = compose(rigid(turns, places), conjugate(rigid(*in_the_world(skeleton, bind_pose(skeleton)))))  # 6.1
     first = np.zeros(len(template.skin_indices), int)

@@ -13,17 +13,19 @@ import numpy as np
 import pytest
 from csharp import CSharp
 from format_program import program, values  # noqa: F401 program is a fixture
-from mutants import mutant, packed_mutant
+from mutants import expression_mutant, mutant, packed_mutant
+from oracle import expressions, file
+from oracle.motion import Pose
 from readers import SECONDS, Reader, within
-from synthetic_avatar import synthetic_avatar, with_surface
+from synthetic_avatar import synthetic_avatar, with_expressions, with_surface
 from web.test_modules import lacking
 
 from mua.asset.flatbuffer import FormatError, parse
 from mua.asset.packing import tensors
-from mua.asset.read import decode_tree, parse_checked
+from mua.asset.read import decode_tree, parse_checked, read
 from mua.asset.tensors import Storage
 from mua.asset.write import encode
-from mua.avatar.decode import decode_clip_frame
+from mua.avatar.decode import decode_clip_frame, express
 from mua.limits import MAX_FRAMES, UNPACKED_ROOM, UNPACKED_TIMES
 from mua.pose.resample import resample
 
@@ -35,6 +37,8 @@ ROOM = 1 << 29  # bytes that reading and decoding one of them may take here: 5,0
 CSHARP_ROOM = 4  # times the file's size that the C# reader may take: 40 clips of 524 bytes take five times their own
 WORDS = 20_000  # bytes of a refusal's words
 WEB_ROOM = 1 << 29  # bytes that Node and its reading of all these files may take at once
+SAME = 1e-6  # in float64: metres of 1, and channels of triangles with edges a millionth of the largest number
+STEP = 7  # of so many texels one is bent by the slower decoder
 CLIPS = 3  # at most so many of a file are decoded; a mutant may hold one many times
 
 
@@ -86,6 +90,44 @@ def test_readers_agree_on_mutants_and_what_they_accept_is_finite(
     assert count / (15 if made is packed_mutant else 5) < codes["ok"] < count * 4 / 5
     assert len(codes) > 8
     assert codes["packed"] > (count / 5 if made is packed_mutant else 0)
+
+
+@pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="needs Linux, which bounds what a process may take")
+@pytest.mark.parametrize("seeds", blocks(), ids=lambda seeds: f"{seeds.start}-{seeds.stop}")
+def test_mutants_with_expressions_are_refused_or_move_a_face_as_the_page_says(tmp_path: Path, seeds: range) -> None:
+    """In bounded memory and time, to finite numbers; a decoder written from the page moves and bends as ours does."""
+    sound = [encode(with_expressions(synthetic_avatar()), storage=storage) for storage in STORAGES]
+    codes, moving = Counter[str](), 0
+    for seed in seeds:
+        content = expression_mutant(sound, seed)
+        with telling(f"expression_mutant {seed}"), within(SECONDS), room(ROOM):
+            code = answer(content)[0]
+            if code == "ok":
+                (tmp_path / "a.muaavatar").write_bytes(content)
+                moving += moves_alike(tmp_path / "a.muaavatar")
+        codes[code] += 1
+    print(f"expression_mutant {seeds.start} to {seeds.stop - 1}: {codes['ok']} accepted, {moving} move, {dict(codes)}")
+    assert len(seeds) / 5 < moving <= codes["ok"] < len(seeds) * 4 / 5
+    assert len(codes) > 8
+
+
+def moves_alike(path: Path) -> bool:
+    """Whether an expression moves anything; fails where two decoders of a file move or bend otherwise."""
+    avatar, record = read(path), file.load(path)
+    rig, mesh = avatar.rig, avatar.coarse.mean.astype(float)
+    weights = np.linspace(0.3, 1, len(avatar.expressions))
+    if rig.expressions is None or not np.abs(rig.expressions.offsets).max(initial=0) > 0:
+        return False
+    texture = np.random.default_rng(0).normal(size=(len(rig.texels.texels), 23))
+    found, bent = express(rig, mesh, texture=texture, weights=weights)
+    moved = expressions.moved(record, Pose(mesh, mesh, weights))
+    corners = record.template.faces[record.texels.triangles[::STEP]]
+    expected = expressions.bend(texture[::STEP], corners, record.coarse.mean, moved)
+    scale = max(np.abs(mesh).max(), np.abs(moved).max())
+    np.testing.assert_allclose(found, record.coarse.mean + moved, rtol=0, atol=SAME * scale)
+    channels = np.delete(np.arange(23), slice(3, 7))  # quaternions have either sign
+    np.testing.assert_allclose(bent[::STEP, channels], expected[:, channels], rtol=0, atol=SAME)
+    return True
 
 
 @contextmanager

@@ -3,13 +3,14 @@
 The student exports one, the writer stores it, the reader returns it and the kernels decode it.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 
 from mua.arguments import describe, finite_array, float_type, unit_quaternions, whole_number
+from mua.arrays import Array
 from mua.avatar.coarser import at_level, coarsest
 from mua.avatar.decode import Splats, decode, decode_clip_frame
 from mua.avatar.model import Model
@@ -39,6 +40,7 @@ class Avatar(Model):
         clip: str | Clip | Sequence[Pose],
         frame: int = 0,
         *,
+        expressions: Mapping[str, float] | None = None,
         dtype: npt.DTypeLike = np.float32,
     ) -> Splats:
         """The splats of one frame, in world space, metres.
@@ -46,25 +48,51 @@ class Avatar(Model):
         `clip` is the name of one of the avatar's clips, a `Clip` of its skeleton at any rate, or a window of poses,
         newest first: as many as `avatar.encoding.window` says, `1 / avatar.encoding.rate` seconds apart. `frame` counts
         from 0 at the avatar's rate, `avatar.encoding.rate` frames per second; a window has no other frame than 0.
-        `dtype` is float32 or float64. `outside` of the splats says how much of the pose training did not show, 0 to 1.
+        `expressions` are weights by name, held to 0 to 1, in place of those of the clip or of the newest pose; what is
+        not named is 0. `dtype` is float32 or float64. `outside` of the splats says how much of the pose training did
+        not show, 0 to 1.
 
-        Errors: InputError for a clip or frame that is not there, and for poses of another skeleton's shape.
+        Errors: InputError for a clip, a frame or an expression that is not there, and for poses of another skeleton's
+        shape.
 
         Example:
 
             splats = avatar.decode("walk", 12)
             splats.centres.shape  # (number of splats, 3)
+            avatar.decode("walk", 12, expressions={"jawOpen": 0.7})
         """
         number, element = whole_number(frame, "frame"), float_type(dtype, "dtype")
+        named = None if expressions is None else self.weights(expressions)
         if isinstance(clip, str):
             clip = self.clip(clip)
         if isinstance(clip, Clip):
             self._check_clip(clip, number)
+            if named is not None:
+                clip = replace(clip, expressions=np.broadcast_to(named, (len(clip), len(named))))
             return decode_clip_frame(self, clip, frame=number, dtype=element)
         if number != 0:
             raise InputError(f"frame is {number}; a window of poses has only frame 0")
         rotations, translations = self._window(clip)
-        return decode(self, rotations, translations=translations, dtype=element)
+        weights = self._pose_weights(clip[0].expressions) if named is None else named
+        return decode(self, rotations, translations=translations, expressions=weights, dtype=element)
+
+    @property
+    def expressions(self) -> tuple[str, ...]:
+        """The names of what moves its face besides joints; empty where it has none."""
+        return () if self.rig.expressions is None else self.rig.expressions.names
+
+    def weights(self, named: Mapping[str, float]) -> Array:
+        """Weights [E] in the order of `expressions`, held to 0 to 1; 0 for those that are not named.
+
+        Errors: InputError for a name that the avatar does not have, and for a weight that is no finite number.
+        """
+        weights = np.zeros(len(self.expressions))
+        for name, weight in named.items():
+            if name not in self.expressions:
+                held = ", ".join(self.expressions) or "none"
+                raise InputError(f"expression is {describe(name)}; the avatar's expressions: {held}")
+            weights[self.expressions.index(name)] = finite_array(weight, f"weight of expression {name!r}", ())
+        return np.clip(weights, 0, 1)
 
     def at_level(self, level: int) -> "Avatar":
         """The same avatar with fewer splats: the texture has half as many texels along a side, `level` times.
@@ -102,6 +130,8 @@ class Avatar(Model):
         joints, of = len(self.rig.skeleton.names), f"of clip {clip.name!r}"
         rotations = unit_quaternions(clip.rotations, f"rotations {of}", (None, joints, 4))
         finite_array(clip.translations, f"translations {of}", (len(rotations), joints, 3))
+        if clip.expressions is not None:
+            finite_array(clip.expressions, f"expressions {of}", (len(rotations), len(self.expressions)))
         if not len(clip):
             raise InputError(f"clip {clip.name!r} has no frames; expected at least one")
         count = frames_at(clip, self.encoding.rate)
@@ -118,3 +148,8 @@ class Avatar(Model):
         rotations = [unit_quaternions(pose.rotations, "rotations of a pose", (joints, 4)) for pose in poses]
         translations = [finite_array(pose.translations, "translations of a pose", (joints, 3)) for pose in poses]
         return np.stack(rotations), np.stack(translations)
+
+    def _pose_weights(self, weights: Array | None) -> Array | None:
+        if weights is None:
+            return None
+        return np.clip(finite_array(weights, "expressions of a pose", (len(self.expressions),)), 0, 1)

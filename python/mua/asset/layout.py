@@ -106,10 +106,17 @@ TABLES = {
         Field("rotations", "Tensor", required=True),
         Field("translation", "Tensor", required=True),
         Field("translations", "Tensor"),
+        Field("expressions", "Tensor"),
     ),
     "Surface": (
         Field("runs", "ubyte", vector=True, required=True),
         Field("strips", "Tensor", required=True),
+    ),
+    "Expressions": (
+        Field("names", "string", vector=True, required=True),
+        Field("starts", "Tensor", required=True),
+        Field("vertices", "Tensor", required=True),
+        Field("offsets", "Tensor", required=True),
     ),
     "Avatar": (
         Field("version_major", "ushort"),
@@ -132,5 +139,6 @@ TABLES = {
         Field("thumbnail", "ubyte", vector=True, required=True),
         Field("surface", "Surface"),
         Field("stages", "uint", vector=True),
+        Field("expressions", "Expressions"),
     ),
 }

@@ -32,7 +32,7 @@ def _listed(rig: Rig) -> Tree:
 
 
 def _is_late(path: str) -> bool:
-    return path.startswith(("clips[", "surface")) and not path.startswith("clips[0]")
+    return path.startswith(("clips[", "surface", "expressions")) and not path.startswith("clips[0]")
 
 
 def _is_part(name: str) -> Callable[[str], bool]:

@@ -11,7 +11,7 @@ from mua.asset.flatbuffer import FormatError, Tree, parse, refuse
 from mua.asset.magnitude import require_bounded
 from mua.asset.packing import unpack
 from mua.asset.read_model import read_branch, read_coarse, read_wavelet
-from mua.asset.read_rig import read_rig, read_skeleton, read_surface, read_translated
+from mua.asset.read_rig import read_rig, read_skeleton, read_surface, read_translated, with_expressions
 from mua.asset.sizes import require_sizes
 from mua.asset.tensors import indices, reals, some_reals, unit_quaternions
 from mua.errors import InputError
@@ -102,6 +102,8 @@ def decode_tree(tree: Tree) -> Avatar:
         for name, channels in (("geometry", GEOMETRY_CHANNELS), ("appearance", APPEARANCE_CHANNELS))
     }
     require_bounded(components, wavelet, coarse, branches)
+    rig = with_expressions(rig, tree)
+    names = rig.expressions.names if rig.expressions else ()
     return Avatar(
         name=tree["name"],
         producer=tree["producer"],
@@ -111,7 +113,7 @@ def decode_tree(tree: Tree) -> Avatar:
         coarse=coarse,
         **branches,
         wavelet=wavelet,
-        clips=_clips(tree["clips"], skeleton, translated, encoding.rate),
+        clips=_clips(tree["clips"], skeleton, translated, names, encoding.rate),
         bounds=_bounds(tree["bounds"]),
         thumbnail=_thumbnail(tree["thumbnail"]),
         notes=tree["notes"],
@@ -159,13 +161,16 @@ def _rate(rate: float, path: str) -> float:
     return rate
 
 
-def _clips(trees: list[Tree], skeleton: Skeleton, translated: Array, encoding_rate: float) -> tuple[Clip, ...]:
+def _clips(
+    trees: list[Tree], skeleton: Skeleton, translated: Array, expressions: tuple[str, ...], encoding_rate: float
+) -> tuple[Clip, ...]:
     clips: list[Clip] = []
     added = 0.0
     for i, tree in enumerate(trees):
-        clip = _clip(tree, f"clips[{i}]", skeleton, translated)
+        clip = _clip(tree, f"clips[{i}]", skeleton, translated, len(expressions))
         times = max(encoding_rate / clip.rate, 1.0)
-        added += (times - 1) * len(clip) * len(skeleton.names)
+        numbers = len(skeleton.names) + (0 if clip.expressions is None else len(expressions))
+        added += (times - 1) * len(clip) * numbers
         if times * len(clip) > MAX_FRAMES or added > MAX_ADDED:
             refuse(
                 f"clips[{i}].rotations",
@@ -175,14 +180,23 @@ def _clips(trees: list[Tree], skeleton: Skeleton, translated: Array, encoding_ra
     return tuple(clips)
 
 
-def _clip(tree: Tree, path: str, skeleton: Skeleton, translated: Array) -> Clip:
+def _clip(tree: Tree, path: str, skeleton: Skeleton, translated: Array, expressions: int) -> Clip:
     rotations = unit_quaternions(tree["rotations"], f"{path}.rotations", (None, len(skeleton.names), 4))
     if not len(rotations):
         refuse(f"{path}.rotations", "a clip needs at least one frame")
     translations = skeleton.with_root(reals(tree["translation"], f"{path}.translation", (len(rotations), 3)))
     if len(translated) or "translations" in tree:
         translations[:, translated] = _translations(tree, f"{path}.translations", (len(rotations), len(translated), 3))
-    return Clip(tree["name"], _rate(tree["rate"], f"{path}.rate"), rotations, translations)
+    rate = _rate(tree["rate"], f"{path}.rate")
+    weights = _weights(tree["expressions"], path, (len(rotations), expressions)) if "expressions" in tree else None
+    return Clip(tree["name"], rate, rotations, translations, expressions=weights)
+
+
+def _weights(tensor: Tree, path: str, shape: tuple[int, ...]) -> Array:
+    weights = reals(tensor, f"{path}.expressions", shape)
+    if weights.min(initial=0) < 0 or weights.max(initial=1) > 1:
+        refuse(f"{path}.expressions", "a weight is not within 0 to 1")
+    return weights
 
 
 def _translations(tree: Tree, path: str, shape: tuple[int, ...]) -> Array:

@@ -1,13 +1,16 @@
 """Skeleton, template, texels and surface of a file's tree: every shape relation and range checked."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from mua.arrays import Array
-from mua.asset.flatbuffer import FormatError, Tree, refuse
+from mua.asset.flatbuffer import MAX_BYTES, FormatError, Tree, refuse
 from mua.asset.tensors import indices, reals, unit_quaternions
 from mua.limits import BARYCENTRIC_SLACK, BIND_BOUND, LARGEST, MAX_INFLUENCES, WEIGHT_BOUND
 from mua.pose.skeleton import Skeleton
 from mua.rig.character import Mesh
+from mua.rig.expressions import Expressions
 from mua.rig.rig import Rig
 from mua.rig.surface import END, Surface, block_triangles, blocks, codes_of, count_codes
 from mua.rig.texel_map import CHIEF, TexelMap, centre_barycentrics
@@ -139,3 +142,23 @@ def read_surface(tree: Tree, texels: TexelMap) -> Surface:
     if block_triangles(corners, codes_of(runs)).min(initial=0) < 0:
         refuse("surface.runs", "a triangle has a corner that is no valid texel")
     return Surface(runs, indices(tree["strips"], "surface.strips", (None,), END, 2 * len(texels.texels)))
+
+
+def with_expressions(rig: Rig, tree: Tree) -> Rig:
+    """The rig with the file's expressions, where it has any."""
+    if "expressions" not in tree:
+        return rig
+    table, vertices = tree["expressions"], len(rig.mesh.vertices)
+    names = tuple(table["names"])
+    for number, name in enumerate(names):
+        if not name or names.index(name) < number:
+            refuse(f"expressions.names[{number}]", f"{name!r} is empty or stands there twice")
+    starts = indices(table["starts"], "expressions.starts", (len(names) + 1,), 0, MAX_BYTES)
+    if starts[0] or np.any(np.diff(starts) < 0):
+        refuse("expressions.starts", "the starts must begin with 0 and never fall")
+    moved = indices(table["vertices"], "expressions.vertices", (int(starts[-1]),), 0, vertices)
+    falls = np.flatnonzero(np.diff(moved) <= 0) + 1
+    if not np.isin(falls, starts).all():
+        refuse("expressions.vertices", "vertices must ascend within an expression")
+    offsets = reals(table["offsets"], "expressions.offsets", (len(moved), 3))
+    return replace(rig, expressions=Expressions(names, starts, moved, offsets))

@@ -12,6 +12,7 @@ from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.avatar.model import Branch, Coarse, DetailBand, Layer
 from mua.channels import APPEARANCE, ATTRIBUTES, CHANNELS, GEOMETRY
+from mua.rig.expressions import Expressions
 
 # Steps of the static offset, measured in docs/research/storage.md; that of an offset is of the figure's height.
 STEPS = {"offset": 2.0**-16, "rotation": 2.0**-8, "scale": 2.0**-7, "opacity": 2.0**-6, "SH": 2.0**-8}
@@ -21,7 +22,7 @@ LL_GAIN = 4.0  # of a coefficient of LL to one of the finest detail, by which we
 
 
 def rounded(avatar: Avatar) -> Avatar:
-    """The same avatar with its bases, its static offset and the last layers of its MLPs in steps.
+    """The same avatar with its bases, its static offset, the last layers of its MLPs and its expressions in steps.
 
     What a triangle map gives back, and what a person reads, stays as it is.
     """
@@ -32,7 +33,12 @@ def rounded(avatar: Avatar) -> Avatar:
         coarse=_coarse(avatar.coarse, MESH * steps[0]),
         geometry=_branch(avatar.geometry, steps[GEOMETRY]),
         appearance=_branch(avatar.appearance, steps[APPEARANCE]),
+        rig=replace(avatar.rig, expressions=_expressions(avatar.rig.expressions, MESH * steps[0])),
     )
+
+
+def _expressions(expressions: Expressions | None, step: float) -> Expressions | None:
+    return expressions and replace(expressions, offsets=in_steps(expressions.offsets, step))
 
 
 def channel_steps(height: float) -> Array:

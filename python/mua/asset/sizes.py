@@ -2,7 +2,16 @@
 
 from mua.asset.flatbuffer import FormatError, Tree
 from mua.channels import most_levels
-from mua.limits import MAX_CLIPS, MAX_JOINTS, MAX_LAYERS, MAX_LEVELS, MAX_SIDE, TEXTURE_ROOM, TEXTURE_TIMES
+from mua.limits import (
+    MAX_CLIPS,
+    MAX_EXPRESSIONS,
+    MAX_JOINTS,
+    MAX_LAYERS,
+    MAX_LEVELS,
+    MAX_SIDE,
+    TEXTURE_ROOM,
+    TEXTURE_TIMES,
+)
 
 
 def require_sizes(tree: Tree) -> None:
@@ -18,6 +27,8 @@ def require_sizes(tree: Tree) -> None:
     most = most_levels(levels, max(details), taps=tree["wavelet"]["rec_lo"].size)
     _require("texels.levels", len(tree["texels"]["levels"]), most)
     _require("clips", len(tree["clips"]), MAX_CLIPS)
+    if "expressions" in tree:
+        _require("expressions.names", len(tree["expressions"]["names"]), MAX_EXPRESSIONS)
 
 
 def _require_texture(texels: Tree, levels: int) -> None:

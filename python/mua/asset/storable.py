@@ -14,7 +14,8 @@ from mua.limits import LARGEST
 
 def require_storable(avatar: Avatar) -> None:
     """Raises InputError that names the field of the first number or name that no player could read."""
-    require_names("the avatar", [avatar.name], avatar.rig.skeleton.names, [clip.name for clip in avatar.clips])
+    clips = [clip.name for clip in avatar.clips]
+    require_names("the avatar", [avatar.name], avatar.rig.skeleton.names, clips, avatar.expressions)
     if avatar.wavelet.coarser:
         raise InputError(f"the avatar is at level {avatar.wavelet.coarser}; expected level 0, from which others follow")
     for field, values in _reals(avatar, ""):
@@ -23,9 +24,12 @@ def require_storable(avatar: Avatar) -> None:
             raise InputError(f"{field}: the value {_worst(values[~held]):.6g} cannot be stored, {_remedy()}")
 
 
-def require_names(owner: str, own: Iterable[str], joints: Iterable[str], clips: Iterable[str]) -> None:
+def require_names(
+    owner: str, own: Iterable[str], joints: Iterable[str], clips: Iterable[str], expressions: Iterable[str] = ()
+) -> None:
     """Raises InputError for a name that every reader of the file would refuse."""
-    for kind, names in (("its name", own), ("the joint", joints), ("the clip", clips)):
+    kinds = (("its name", own), ("the joint", joints), ("the clip", clips), ("the expression", expressions))
+    for kind, names in kinds:
         for name in names:
             if control := CONTROL.search(name):
                 found = f"has the control character U+{ord(control[0]):04X} in its name"

@@ -19,6 +19,7 @@ PARTS = (
     "clips",
     "thumbnail",
     "surface",
+    "expressions",
 )
 
 
@@ -50,6 +51,7 @@ def summary(
         "unpacked_bytes_by_part": {part: unpacked_bytes(tree.get(part)) for part in PARTS},
         "parameters": parameters(avatar),
         "flops_per_frame": flops(avatar),
+        "expressions": list(avatar.expressions),
         "clips": [
             {"name": clip.name, "frames": len(clip), "rate": clip.rate, "seconds": len(clip) / clip.rate}
             for clip in avatar.clips

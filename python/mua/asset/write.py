@@ -22,6 +22,7 @@ from mua.files.write import write_bytes
 from mua.pose.clip import Clip
 from mua.pose.encoding import Components, PoseEncoding
 from mua.pose.skeleton import Skeleton
+from mua.rig.expressions import Expressions
 from mua.rig.rig import Rig
 from mua.rig.surface import Surface
 
@@ -107,6 +108,7 @@ def _avatar(avatar: Avatar, element: Element) -> Tree:
         "bounds": pack(avatar.bounds),
         "thumbnail": np.frombuffer(avatar.thumbnail, np.uint8),
         **_surface(avatar.surface),
+        **_expressions(avatar.rig.expressions, element),
     }
 
 
@@ -118,6 +120,19 @@ def _one_sided(texels: Array | None) -> Tree:
 def _surface(surface: Surface | None) -> Tree:
     """Absent where there is none."""
     return {"surface": {"runs": surface.runs, "strips": pack_indices(surface.strips)}} if surface else {}
+
+
+def _expressions(expressions: Expressions | None, element: Element) -> Tree:
+    """Absent where there are none."""
+    if expressions is None or not len(expressions):
+        return {}
+    table = {
+        "names": list(expressions.names),
+        "starts": pack_indices(expressions.starts),
+        "vertices": pack_indices(expressions.vertices),
+        "offsets": pack(expressions.offsets, _half(element)),
+    }
+    return {"expressions": table}
 
 
 def _translated(avatar: Avatar) -> Array:
@@ -214,7 +229,11 @@ def _clip(clip: Clip, skeleton: Skeleton, translated: Array, element: Element) -
         "rotations": pack(clip.rotations, _half(element)),
         "translation": pack(clip.translations[:, skeleton.root]),
     }
-    return {**tree, "translations": pack(clip.translations[:, translated])} if len(translated) else tree
+    if len(translated):
+        tree["translations"] = pack(clip.translations[:, translated])
+    if clip.expressions is not None and clip.expressions.any():
+        tree["expressions"] = pack(clip.expressions, _half(element))
+    return tree
 
 
 def _half(element: Element) -> Element:

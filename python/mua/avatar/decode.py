@@ -11,6 +11,7 @@ from mua.avatar.model import Branch, Mlp, Model, Wavelet
 from mua.channels import APPEARANCE
 from mua.kernels.blend_subbands import blend_detail, blend_ll
 from mua.kernels.dq_skinning import blend_texels, blend_vertices, skin_splats
+from mua.kernels.expressions import bend_texels
 from mua.kernels.inverse_dwt import add_static, halve, inverse_dwt
 from mua.kernels.mlp_matmul import mlp_matmul
 from mua.pose.clip import Clip
@@ -52,6 +53,7 @@ def decode(
     rotations: Array,  # [k, J, 4] local joint rotations, newest first
     *,
     translations: Array,  # [k, J, 3] local joint translations, metres
+    expressions: Array | None = None,  # [E] weights of the newest frame, 0 to 1; None: all 0
     dtype: npt.DTypeLike = np.float32,
 ) -> Splats:
     """Decode the newest frame of a window of poses; float64 gives the most exact reference."""
@@ -62,6 +64,7 @@ def decode(
     geometry = decode_branch(avatar.geometry, avatar.wavelet, x, texels=avatar.rig.texels.texels)
     appearance = decode_branch(avatar.appearance, avatar.wavelet, x, texels=avatar.rig.texels.texels)
     texture = np.concatenate([geometry, appearance]).T
+    canonical, texture = express(avatar.rig, canonical, texture=texture, weights=expressions)
     pose = Pose(rotations[0], translations[0])
     splats = pose_splats(avatar.rig, canonical, texture=texture, pose=pose, bounds=avatar.bounds)
     return replace(splats, outside=float(outside))
@@ -76,7 +79,8 @@ def decode_clip_frame(
 ) -> Splats:
     """Decode one frame of a clip; before its first frame, the clip stands still."""
     window = sample(clip, np.array(avatar.encoding.frames(frame)), rate=avatar.encoding.rate)
-    return decode(avatar, window.rotations, translations=window.translations, dtype=dtype)
+    weights = None if window.expressions is None else window.expressions[0]
+    return decode(avatar, window.rotations, translations=window.translations, expressions=weights, dtype=dtype)
 
 
 def expand_mesh(
@@ -114,6 +118,21 @@ def decode_branch(
     for _ in range(wavelet.coarser):
         texture = halve(texture)
     return add_static(texture, texels, branch.static.astype(dtype, copy=False))
+
+
+def express(
+    rig: Rig,
+    canonical: Array,  # [V, 3] canonical vertices, metres
+    *,
+    texture: Array,  # [N, 23] raw channels at the valid texels
+    weights: Array | None,  # [E] 0 to 1; None: all 0
+) -> tuple[Array, Array]:
+    """Vertices and texture with the expressions; the very same where all weights are 0."""
+    if rig.expressions is None or weights is None or not weights.any():
+        return canonical, texture
+    moved = rig.expressions.displacement(weights.astype(canonical.dtype), vertices=len(canonical))
+    texels = bend_texels(canonical, moved, rig.mesh.faces, rig.texels.triangles, texture)
+    return canonical + moved, texels
 
 
 def pose_splats(

@@ -60,6 +60,9 @@ def _whole(held: dict[str, Any]) -> Table:
         f"{'heading removed' if descriptor['heading_removed'] else 'world heading'}",
         "template": f"{template['vertices']} vertices, {template['triangles']} triangles, "
         f"{template['pca_components']} PCA components",
+        "expressions": f"{len(held['expressions'])}: {', '.join(held['expressions'])}"
+        if held["expressions"]
+        else "none",
         "texels": f"{texels['used']} of {texels['side']} x {texels['side']}",
         "wavelet": f"{wavelet['name']}, {wavelet['levels']} levels",
         "geometry ranks": " ".join(map(str, held["ranks"]["geometry"])),

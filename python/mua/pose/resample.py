@@ -47,4 +47,5 @@ def sample(
         rotations=rotation.slerp(clip.rotations[before], clip.rotations[after], t[:, None]),
         translations=between(clip.translations),
         stretches=None if kept is None else replace(kept, matrices=between(kept.matrices)),
+        expressions=None if clip.expressions is None else between(clip.expressions),
     )

@@ -10,11 +10,14 @@ from mua.arrays import Array
 from mua.errors import InputError
 
 
-def read_npz(path: Path, names: Collection[str]) -> dict[str, Array]:
-    """The arrays `names` of a file; raises InputError where it is missing, damaged or lacks one."""
+def read_npz(path: Path, names: Collection[str], *, optional: Collection[str] = ()) -> dict[str, Array]:
+    """The arrays `names` of a file, and those of `optional` that it has.
+
+    Raises InputError where it is missing, damaged or lacks one of `names`.
+    """
     try:
         with path.open("rb") as file, np.load(file, allow_pickle=False) as stored:
-            return {name: stored[name] for name in names}
+            return {name: stored[name] for name in (*names, *(name for name in optional if name in stored))}
     except FileNotFoundError as error:
         raise InputError(f"{path}: is missing") from error
     except KeyError as error:

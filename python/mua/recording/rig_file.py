@@ -10,6 +10,7 @@ from mua.files.write import replacing
 from mua.pose.skeleton import Skeleton
 from mua.recording.npz import read_npz
 from mua.rig.character import Mesh
+from mua.rig.expressions import Expressions
 from mua.rig.rig import Rig
 from mua.rig.texel_map import TexelMap
 
@@ -18,6 +19,7 @@ NAMES = (
     *("vertices", "faces", "uv", "uv_faces", "skin_indices", "skin_weights"),
     *("size", "texels", "triangles", "barycentrics", "claimed_twice"),
 )
+EXPRESSIONS = tuple(f"expression_{part}" for part in ("names", "starts", "vertices", "offsets"))  # where there are any
 
 
 def rig_hash(rig: Rig) -> str:
@@ -36,7 +38,7 @@ def write_rig(path: Path, rig: Rig) -> None:
 
 def read_rig(path: Path) -> Rig:
     """Raises InputError for a file that is missing, damaged or lacks an array."""
-    return _rig(read_npz(path, NAMES))
+    return _rig(read_npz(path, NAMES, optional=EXPRESSIONS))
 
 
 def _arrays(rig: Rig) -> dict[str, Array]:
@@ -57,7 +59,15 @@ def _arrays(rig: Rig) -> dict[str, Array]:
         "triangles": rig.texels.triangles,
         "barycentrics": rig.texels.barycentrics,
         "claimed_twice": np.array(rig.texels.claimed_twice),
+        **_expression_arrays(rig.expressions),
     }
+
+
+def _expression_arrays(expressions: Expressions | None) -> dict[str, Array]:
+    if expressions is None:
+        return {}
+    parts = (np.array(expressions.names), expressions.starts, expressions.vertices, expressions.offsets)
+    return dict(zip(EXPRESSIONS, parts, strict=True))
 
 
 def _rig(a: dict[str, Array]) -> Rig:
@@ -68,4 +78,12 @@ def _rig(a: dict[str, Array]) -> Rig:
         a["skin_indices"],
         a["skin_weights"],
         TexelMap(int(a["size"]), a["texels"], a["triangles"], a["barycentrics"], int(a["claimed_twice"])),
+        _expressions(a),
     )
+
+
+def _expressions(a: dict[str, Array]) -> Expressions | None:
+    if not all(name in a for name in EXPRESSIONS):
+        return None
+    names, *parts = (a[name] for name in EXPRESSIONS)
+    return Expressions(tuple(str(name) for name in names), *parts)

@@ -94,11 +94,18 @@ namespace Mua.Format
             new Field("rate", Kind.F32),
             new Field("rotations", Kind.Table, required: true, table: Tensor),
             new Field("translation", Kind.Table, required: true, table: Tensor),
-            new Field("translations", Kind.Table, table: Tensor));
+            new Field("translations", Kind.Table, table: Tensor),
+            new Field("expressions", Kind.Table, table: Tensor));
 
         public static readonly Layout Surface = new Layout(
             new Field("runs", Kind.U8, vector: true, required: true),
             new Field("strips", Kind.Table, required: true, table: Tensor));
+
+        public static readonly Layout Expressions = new Layout(
+            new Field("names", Kind.Text, vector: true, required: true),
+            new Field("starts", Kind.Table, required: true, table: Tensor),
+            new Field("vertices", Kind.Table, required: true, table: Tensor),
+            new Field("offsets", Kind.Table, required: true, table: Tensor));
 
         public static readonly Layout Avatar = new Layout(
             new Field("version_major", Kind.U16),
@@ -120,7 +127,8 @@ namespace Mua.Format
             new Field("bounds", Kind.Table, required: true, table: Tensor),
             new Field("thumbnail", Kind.U8, vector: true, required: true),
             new Field("surface", Kind.Table, table: Surface),
-            new Field("stages", Kind.U32, vector: true));
+            new Field("stages", Kind.U32, vector: true),
+            new Field("expressions", Kind.Table, table: Expressions));
 
         public static readonly Layout Root = Avatar;
     }

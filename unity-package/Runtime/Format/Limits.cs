@@ -5,7 +5,7 @@ namespace Mua.Format
     internal static class Limits
     {
         public const int Major = 1;
-        public const int Minor = 0;
+        public const int Minor = 1;
         public const int MaxRank = 4;
         public const double Largest = 65504.0;
         public const int UnpackedTimes = 16;
@@ -14,6 +14,7 @@ namespace Mua.Format
         public const int MaxJoints = 4096;
         public const int MaxLayers = 64;
         public const int MaxClips = 4096;
+        public const int MaxExpressions = 1024;
         public const int MaxLevels = 8;
         public const int MaxSide = 4096;
         public const int TextureTimes = 16;

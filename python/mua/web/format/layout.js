@@ -91,10 +91,17 @@ export const TABLES = {
     { name: "rotations", kind: "Tensor", required: true },
     { name: "translation", kind: "Tensor", required: true },
     { name: "translations", kind: "Tensor" },
+    { name: "expressions", kind: "Tensor" },
   ],
   Surface: [
     { name: "runs", kind: "ubyte", vector: true, required: true },
     { name: "strips", kind: "Tensor", required: true },
+  ],
+  Expressions: [
+    { name: "names", kind: "string", vector: true, required: true },
+    { name: "starts", kind: "Tensor", required: true },
+    { name: "vertices", kind: "Tensor", required: true },
+    { name: "offsets", kind: "Tensor", required: true },
   ],
   Avatar: [
     { name: "version_major", kind: "ushort" },
@@ -117,5 +124,6 @@ export const TABLES = {
     { name: "thumbnail", kind: "ubyte", vector: true, required: true },
     { name: "surface", kind: "Surface" },
     { name: "stages", kind: "uint", vector: true },
+    { name: "expressions", kind: "Expressions" },
   ],
 };

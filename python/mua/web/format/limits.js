@@ -1,7 +1,7 @@
 // Generated from python/mua/limits.py by tools/gen_layout.py; do not edit.
 
 export const MAJOR = 1;
-export const MINOR = 0;
+export const MINOR = 1;
 export const MAX_RANK = 4;
 export const LARGEST = 65504.0;
 export const UNPACKED_TIMES = 16;
@@ -10,6 +10,7 @@ export const STAGES = 5;
 export const MAX_JOINTS = 4096;
 export const MAX_LAYERS = 64;
 export const MAX_CLIPS = 4096;
+export const MAX_EXPRESSIONS = 1024;
 export const MAX_LEVELS = 8;
 export const MAX_SIDE = 4096;
 export const TEXTURE_TIMES = 16;

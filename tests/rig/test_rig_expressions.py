@@ -57,4 +57,5 @@ def test_weights_follow_the_frames_of_a_clip() -> None:
     np.testing.assert_array_equal(face.cut(slice(1, 3)).expressions, weights[1:3])
     np.testing.assert_array_equal(face.then(still).expressions, np.concatenate([weights, np.zeros((4, 3))]))
     np.testing.assert_array_equal(still.then(face).expressions, np.concatenate([np.zeros((4, 3)), weights]))
-    assert still.pose(1).expressions is None and still.then(still).expressions is None
+    assert still.pose(1).expressions is None
+    assert still.then(still).expressions is None

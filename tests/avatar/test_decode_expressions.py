@@ -1,0 +1,213 @@
+"""Expressions in decoding: what bends is an independent solution's, what does not stays bit for bit."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.linalg import polar
+from scipy.spatial.transform import Rotation
+from synthetic_avatar import synthetic_avatar, with_expressions, with_one_sided
+
+from mua import rotation
+from mua.arrays import Array
+from mua.asset.avatar import Avatar
+from mua.avatar.decode import Splats, express
+from mua.errors import InputError
+from mua.kernels.expressions import LEAST, MOST_STRETCH, bend_texels, by_vertex, reached
+from mua.pose.resample import resample
+from mua.pose.skeleton import Pose
+from mua.rig.expressions import Expressions
+
+ROUNDING = 1e-12  # of numbers about 1, in float64
+SINGLE = 1e-4  # in float32: triangles whose height is a tenth of their sides, of 24-bit coordinates
+
+
+def map_of(before: Array, after: Array) -> Array:
+    """The map [3, 3] of a triangle's edges and unit normal to another's, by solving for it."""
+
+    def columns(corners: Array) -> Array:
+        first, second = corners[1] - corners[0], corners[2] - corners[0]
+        normal = np.cross(first, second)
+        return np.column_stack([first, second, normal / np.linalg.norm(normal)])
+
+    return np.linalg.solve(columns(before).T, columns(after).T).T
+
+
+def soup(rng: np.random.Generator, count: int) -> tuple[Array, Array, Array]:
+    """Triangles with corners of their own [3 n, 3], how far these move, and the faces."""
+    corners = rng.normal(size=(count, 3, 3))
+    return corners.reshape(-1, 3), rng.normal(0, 0.5, (3 * count, 3)), np.arange(3 * count).reshape(-1, 3)
+
+
+def assert_bends_as_solved(dtype: type, bound: float) -> None:
+    rng = np.random.default_rng(0)
+    mesh, moved, faces = (a if a.dtype.kind == "i" else a.astype(dtype) for a in soup(rng, 300))
+    texture: Array = rng.normal(size=(300, 23)).astype(dtype)
+    bent = bend_texels(mesh, moved, faces, np.arange(300), texture)
+    assert bent.dtype == dtype
+    for texel, found, face in zip(texture.astype(float), bent.astype(float), faces, strict=True):
+        before = mesh[face].astype(float)
+        deformation = map_of(before, before + moved[face])
+        turn = polar(deformation)[0]
+        own = Rotation.from_quat(texel[3:7], scalar_first=True).as_matrix()
+        stretch = np.linalg.norm(deformation @ own, axis=0)
+        np.testing.assert_allclose(found[0:3], turn @ texel[0:3], rtol=0, atol=10 * bound)
+        np.testing.assert_allclose(
+            Rotation.from_quat(found[3:7], scalar_first=True).as_matrix(), turn @ own, rtol=0, atol=10 * bound
+        )
+        assert np.linalg.norm(found[3:7]) == pytest.approx(np.linalg.norm(texel[3:7]), rel=bound)
+        expected = texel[7:10] + np.log(np.clip(stretch, 1 / MOST_STRETCH, MOST_STRETCH))
+        np.testing.assert_allclose(found[7:10], expected, rtol=0, atol=10 * bound)
+        np.testing.assert_array_equal(found[10:], texel[10:])
+
+
+def test_a_texel_follows_the_polar_rotation_and_the_stretch_of_its_triangle() -> None:
+    assert_bends_as_solved(np.float64, 1e-10)
+
+
+def test_single_precision_stays_near() -> None:
+    assert_bends_as_solved(np.float32, SINGLE)
+
+
+def test_a_rigid_motion_turns_a_texel_and_leaves_its_size() -> None:
+    rng = np.random.default_rng(1)
+    mesh, _, faces = soup(rng, 20)
+    turn = Rotation.random(rng=2)
+    moved = turn.apply(mesh) + np.array([1, 2, 3]) - mesh
+    texture = rng.normal(size=(20, 23))
+    bent = bend_texels(mesh, moved, faces, np.arange(20), texture)
+    np.testing.assert_allclose(bent[:, 0:3], turn.apply(texture[:, 0:3]), rtol=0, atol=1e-9)
+    np.testing.assert_allclose(bent[:, 7:10], texture[:, 7:10], rtol=0, atol=1e-9)
+    own, found = (Rotation.from_quat(t[:, 3:7], scalar_first=True) for t in (texture, bent))
+    np.testing.assert_allclose((turn * own).as_matrix(), found.as_matrix(), rtol=0, atol=1e-9)
+
+
+def test_a_splat_grows_with_its_triangle_up_to_a_bound_and_keeps_its_thickness() -> None:
+    corners, faces = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), np.array([[0, 1, 2]])
+    texture = np.zeros((1, 23))
+    texture[:, 3] = 1
+    for factor, grown in ((2.0, 2.0), (0.5, 0.5), (1000.0, MOST_STRETCH), (0.001, 1 / MOST_STRETCH)):
+        bent = bend_texels(corners, (factor - 1) * corners, faces, np.zeros(1, int), texture)
+        np.testing.assert_allclose(np.exp(bent[0, 7:10]), [grown, grown, 1], rtol=ROUNDING)
+
+
+def test_texels_of_triangles_that_vanish_stay_as_they_are() -> None:
+    flat, faces = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), np.array([[0, 1, 2]])
+    texture = np.random.default_rng(3).normal(size=(1, 23))
+    line, point, thin = flat * [1, 0, 0], flat * 0, flat * [1, LEAST / 2, 1]
+    for before, after in [(flat, line), (flat, point), (line, flat), (point, flat), (thin, flat), (flat, thin)]:
+        bent = bend_texels(before, after - before, faces, np.zeros(1, int), texture)
+        np.testing.assert_array_equal(bent, texture)
+
+
+def test_lists_by_vertex_hold_every_entry_once_and_sum_to_the_same() -> None:
+    rng, count = np.random.default_rng(4), 40
+    moved = [np.sort(rng.permutation(count)[:n]) for n in (7, 0, 13, 1, 25)]
+    offsets = rng.normal(size=(sum(map(len, moved)), 3))
+    starts = np.cumsum([0, *map(len, moved)])
+    expressions = Expressions(tuple("abcde"), starts, np.concatenate(moved), offsets)
+    targets, weights = by_vertex(starts, expressions.vertices, offsets), rng.random(5)
+    assert (np.diff(targets.vertices) > 0).all()
+    found = np.zeros((count, 3))
+    for vertex, first, end in zip(targets.vertices, targets.starts[:-1], targets.starts[1:], strict=True):
+        assert (np.diff(targets.expressions[first:end]) > 0).all()
+        found[vertex] = weights[targets.expressions[first:end]] @ targets.offsets[first:end]
+    expected = expressions.displacement(weights, vertices=count)
+    np.testing.assert_allclose(found, expected, rtol=0, atol=ROUNDING)
+
+
+def test_nothing_is_reached_where_nothing_moves() -> None:
+    targets = by_vertex(np.zeros(4, int), np.zeros(0, int), np.zeros((0, 3)))
+    assert (len(targets.vertices), targets.starts.tolist()) == (0, [0])
+    assert len(reached(targets.vertices, np.array([[0, 1, 2]]), np.zeros(9, int))) == 0
+
+
+def arrays(splats: Splats) -> dict[str, Array]:
+    return {name: value for name, value in vars(splats).items() if isinstance(value, np.ndarray)}
+
+
+@pytest.fixture
+def avatar() -> Avatar:
+    plain = synthetic_avatar()
+    return with_expressions(with_one_sided(plain, np.arange(len(plain.rig.texels.texels)) % 2 == 0))
+
+
+def without(avatar: Avatar) -> Avatar:
+    clips = tuple(replace(clip, expressions=None) for clip in avatar.clips)
+    return replace(avatar, rig=replace(avatar.rig, expressions=None), clips=clips)
+
+
+@pytest.mark.parametrize("level", [0, 1, 2])
+@pytest.mark.parametrize("named", [{}, {"jawOpen": 0.0}, {"nothing": 1.0}])
+def test_weights_of_0_give_the_bytes_of_the_avatar_without(avatar: Avatar, level: int, named: dict[str, float]) -> None:
+    found = arrays(avatar.at_level(level).decode("wave", 3, expressions=named))
+    for name, values in arrays(without(avatar).at_level(level).decode("wave", 3)).items():
+        assert found[name].tobytes() == values.tobytes(), name
+
+
+@pytest.mark.parametrize("level", [0, 1, 2])
+def test_only_texels_in_reach_change_and_they_do(avatar: Avatar, level: int) -> None:
+    shown = avatar.at_level(level)
+    plain, spoken = (shown.decode("wave", 3, expressions=named) for named in ({}, {"jawOpen": 0.7}))
+    near = reached(np.array([6, 7, 8]), shown.rig.mesh.faces, shown.rig.texels.triangles)
+    far = np.setdiff1d(np.arange(len(plain)), near)
+    assert len(near)
+    assert len(far)
+    for name in ("centres", "rotations", "scales", "normals"):
+        before, after = arrays(plain)[name], arrays(spoken)[name]
+        assert after[far].tobytes() == before[far].tobytes(), name
+        if name != "normals":
+            assert (after[near] != before[near]).any(axis=1).all(), name
+    assert spoken.texel_dq.tobytes() == plain.texel_dq.tobytes()
+    np.testing.assert_array_equal(np.flatnonzero((spoken.mesh != plain.mesh).any(axis=1)), [6, 7, 8])
+
+
+def test_a_clip_moves_the_face_by_its_weights_at_any_rate(avatar: Avatar) -> None:
+    for rate in (24.0, 30.0):
+        clip = replace(avatar.clips[0], rate=rate)
+        played = resample(clip, 24.0)
+        assert played.expressions is not None
+        shown = avatar.decode(clip, 4)
+        weights = dict(zip(avatar.expressions, played.expressions[4], strict=True))
+        expected = avatar.decode(replace(clip, expressions=None), 4, expressions=weights)
+        np.testing.assert_array_equal(shown.centres, expected.centres)
+        assert (shown.centres != avatar.decode(clip, 4, expressions={}).centres).any()
+
+
+def test_a_window_moves_the_face_by_its_newest_pose(avatar: Avatar) -> None:
+    clip = avatar.clips[0]
+    poses = [clip.pose(frame) for frame in (3, 2, 1)]
+    older = [poses[0], *(Pose(pose.rotations, pose.translations) for pose in poses[1:])]
+    assert avatar.decode(poses).centres.tobytes() == avatar.decode("wave", 3).centres.tobytes()
+    assert avatar.decode(older).centres.tobytes() == avatar.decode("wave", 3).centres.tobytes()
+
+
+def test_weights_beyond_0_and_1_are_held_there(avatar: Avatar) -> None:
+    for given, held in ((7.0, 1.0), (-3.0, 0.0)):
+        found, expected = (avatar.decode("wave", 3, expressions={"jawOpen": weight}) for weight in (given, held))
+        assert found.centres.tobytes() == expected.centres.tobytes()
+
+
+def test_wrong_weights_are_refused_in_a_sentence(avatar: Avatar) -> None:
+    with pytest.raises(InputError, match="expression is 'smile'; the avatar's expressions: jawOpen, eyeBlinkLeft"):
+        avatar.decode("wave", 3, expressions={"smile": 1.0})
+    with pytest.raises(InputError, match="weight of expression 'jawOpen': a value is not finite"):
+        avatar.decode("wave", 3, expressions={"jawOpen": float("nan")})
+    with pytest.raises(InputError, match=r"expressions of clip 'wave': the shape is \[7, 2\], expected \[7, 4\]"):
+        avatar.decode(replace(avatar.clips[0], expressions=np.zeros((7, 2))), 3)
+    with pytest.raises(InputError, match="expression is 'jawOpen'; the avatar's expressions: none"):
+        without(avatar).decode("wave", 3, expressions={"jawOpen": 1.0})
+
+
+def test_a_mesh_and_its_texels_move_together(avatar: Avatar) -> None:
+    """An expression that turns all of the figure is a turn of all splats."""
+    rig, turn = avatar.rig, Rotation.from_euler("xyz", [0.4, 0.3, -0.2])
+    mesh, texture = rig.mesh.vertices, np.random.default_rng(5).normal(size=(len(rig.texels.texels), 23))
+    count = len(mesh)
+    whole = Expressions(("turn",), np.array([0, count]), np.arange(count), turn.apply(mesh) - mesh)
+    moved, bent = express(replace(rig, expressions=whole), mesh, texture=texture, weights=np.ones(1))
+    np.testing.assert_allclose(moved, turn.apply(mesh), rtol=0, atol=ROUNDING)
+    np.testing.assert_allclose(bent[:, 0:3], turn.apply(texture[:, 0:3]), rtol=0, atol=1e-9)
+    found = rotation.to_matrix(rotation.normalize(bent[:, 3:7]))
+    own = rotation.to_matrix(rotation.normalize(texture[:, 3:7]))
+    np.testing.assert_allclose(found, turn.as_matrix() @ own, rtol=0, atol=1e-9)
