@@ -84,7 +84,7 @@ def test_targets_of_one_name_in_several_meshes_are_one_expression(tmp_path: Path
     glb = with_targets(["open"], [UP])
     other = {**glb.json["meshes"][0], "name": "teeth"}
     other["primitives"] = [primitive(glb) | {"attributes": dict(primitive(glb)["attributes"])}]
-    other["primitives"][0]["attributes"]["POSITION"] = glb.accessor(POINTS + [1, 0, 0])
+    other["primitives"][0]["attributes"]["POSITION"] = glb.accessor(POINTS + np.eye(3)[0])
     glb.json["meshes"].append(other)
     glb.json["nodes"].append({"mesh": 1, "skin": 0, "name": "teeth"})
     glb.json["scenes"][0]["nodes"].append(4)

@@ -77,10 +77,10 @@ def _expression(document: Document, name: str, entry: dict[str, Any], at: str, m
     by_mesh = "morphTargetBinds" not in entry and "binds" in entry
     field = "binds" if by_mesh else "morphTargetBinds"
     binds = []
-    for b, bind in enumerate(_array(document, entry.get(field), f"{at}.{field}")):
+    for b, stated in enumerate(_array(document, entry.get(field), f"{at}.{field}")):
         place = f"{at}.{field}[{b}]"
-        bind = _object(document, bind, place)
-        holder = bind.get("mesh" if by_mesh else "node")
+        bind = _object(document, stated, place)
+        holder: Any = bind.get("mesh" if by_mesh else "node")
         document.item("meshes" if by_mesh else "nodes", holder, field=f"{place}.{'mesh' if by_mesh else 'node'}")
         binds.append((int(holder), *_target(document, bind, place, whole=100 if by_mesh else 1)))
     if any(entry.get(field) for field in ("materialColorBinds", "textureTransformBinds", "materialValues")):
