@@ -63,6 +63,23 @@ class Skin:
 
 
 @dataclass(frozen=True, eq=False)
+class Target:
+    """How far weight 1 of an expression moves vertices of one part; the parts' targets of one name move together."""
+
+    name: str
+    vertices: Array  # [n] int into the part's positions, ascending
+    offsets: Array  # [n, 3] float64 in the mesh's own space
+
+    def at(
+        self,
+        kept: Array,  # [m] int, ascending
+    ) -> "Target":
+        """The target of a part that has these of its vertices."""
+        _, rows, vertices = np.intersect1d(self.vertices, kept, assume_unique=True, return_indices=True)
+        return Target(self.name, vertices, self.offsets[rows])
+
+
+@dataclass(frozen=True, eq=False)
 class Part:
     """Triangles of one material on one skin; vertices of parts of one group may be welded."""
 
@@ -78,6 +95,7 @@ class Part:
     weights: Array  # [N, K] float64, any scale
     node: str = ""  # the file's name of the object that the mesh belongs to
     colors: Array | None = None  # [F, 3, 4] linear colour and opacity of the corners, multiplied into the material
+    targets: tuple[Target, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)

@@ -91,22 +91,20 @@ def test_meshes_for_the_wearers_own_eyes_are_left_out(tmp_path: Path) -> None:
         assert "Meshes that the file hides are left out: inner." in surfaces.notes
 
 
-def test_author_licence_springs_faces_and_constraints_are_noted(tmp_path: Path) -> None:
+def test_author_licence_springs_and_constraints_are_noted(tmp_path: Path) -> None:
     meta = {"name": "Mira", "authors": ["Ann", "Bo"], "licenseUrl": "https://example.org/terms"}
-    glb = second(body(), BONES, meta=meta, expressions={"preset": {"happy": {}}})
+    glb = second(body(), BONES, meta=meta)
     glb.json["extensions"]["VRMC_springBone"] = {"springs": [{}, {}]}
     glb.json["nodes"][1]["extensions"] = {"VRMC_node_constraint": {"constraint": {}}}
     notes = " ".join(read(glb, tmp_path).notes)
     assert "VRM avatar Mira by Ann, Bo: its licence is https://example.org/terms;" in notes
     assert "2 spring bone groups are left out" in notes
-    assert "facial expressions (blend shapes) are left out" in notes
     assert "constraints on 1 of the avatar's nodes are left out" in notes
     old = first(body(), BONES, meta={"title": "Mira", "author": "Ann", "licenseName": "CC_BY"},
-                secondaryAnimation={"boneGroups": [{}]}, blendShapeMaster={"blendShapeGroups": [{}]})  # fmt: skip
+                secondaryAnimation={"boneGroups": [{}]})  # fmt: skip
     notes = " ".join(read(old, tmp_path).notes)
     assert "Mira by Ann: its licence is CC BY;" in notes
     assert "1 spring bone groups" in notes
-    assert "facial expressions" in notes
 
 
 @pytest.mark.parametrize(

@@ -129,5 +129,6 @@ def _only(
         materials=tuple(surfaces.materials[k] for k in shown),
         skin_indices=surfaces.skin_indices[used],
         skin_weights=surfaces.skin_weights[used],
+        expressions=None if surfaces.expressions is None else surfaces.expressions.at(used),
         corner_colors=None if surfaces.corner_colors is None else surfaces.corner_colors[seen],
     )

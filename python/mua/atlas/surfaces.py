@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from mua.arrays import Array
 from mua.pose.clip import Clip
 from mua.pose.skeleton import Skeleton
+from mua.rig.expressions import Expressions
 from mua.scene import Material, Source
 
 
@@ -33,3 +34,4 @@ class Surfaces:
     roles: Mapping[str, str] = field(default_factory=dict)  # joint to body part, where the file itself says it
     unit: float = 1.0  # metres as which one metre of the file is taken
     size_notes: tuple[str, ...] = ()  # those of the notes that say so
+    expressions: Expressions | None = None  # over the vertices; None: the character has none

@@ -220,6 +220,7 @@ def _character(source: _Source, layout: _Layout, size: int) -> Character:
         notes=surfaces.notes + layout.notes,
         source=surfaces.source,
         roles=surfaces.roles,
+        expressions=surfaces.expressions,
     )
 
 

@@ -12,6 +12,7 @@ from mua.characters.alpha import NOTHING_SAID, Alphas, with_alphas
 from mua.characters.bind_pose import Bind, bind_pose
 from mua.characters.collapsed import without_collapsed
 from mua.characters.correction import corrected
+from mua.characters.expressions import fingerprints, joined_targets
 from mua.characters.facing import AS_SHOWN, Facing
 from mua.characters.messages import UNHELD, Messages
 from mua.characters.outline import outlines
@@ -19,9 +20,10 @@ from mua.characters.rigid_skeleton import rigid_skeleton, roles_of
 from mua.characters.winding import inside_out
 from mua.errors import InputError
 from mua.limits import MAX_INFLUENCES
-from mua.scene import Part, Scene, Source, without
+from mua.rig.expressions import Expressions
+from mua.scene import Part, Scene, Source, Target, without
 
-WELD = 1e-6  # of the character's size: vertices of one mesh nearer than this, with equal weights, are one
+WELD = 1e-6  # of the character's size: vertices of one mesh nearer than this, with equal weights and targets, are one
 WEIGHT_STEP = 1e-5  # weights nearer than this are equal
 LOST_WEIGHT = 0.02  # of a vertex: dropping more than this is worth a sentence
 OTHER_SIZE = "--height METRES sets another height; --scale FACTOR multiplies the size in the file."
@@ -40,6 +42,7 @@ class _Mesh:
     uv_faces: Array  # [F, 3] int
     face_material: Array  # [F] int32
     colors: Array  # [F, 3, 4] linear
+    expressions: Expressions | None
     notes: tuple[str, ...]
 
 
@@ -94,6 +97,7 @@ def assemble(
         materials=tuple(scene.materials[m] for m in shown),
         skin_indices=indices,
         skin_weights=mesh.weights.astype(np.float32),
+        expressions=mesh.expressions,
         clips=rigged.clips,
         source=Source(scene, rigged.nodes),
         corner_colors=None if (mesh.colors == 1).all() else mesh.colors,
@@ -185,8 +189,11 @@ def weighted(weights: Array) -> Array:
 
 def _merge(scene: Scene, bind: Bind) -> _Mesh:
     joint_of = {int(node): j for j, node in enumerate(bind.nodes)}
-    columns: dict[str, list[Array]] = {name: [] for name in _Mesh.__annotations__ if name != "notes"}
+    columns: dict[str, list[Array]] = {
+        name: [] for name in _Mesh.__annotations__ if name not in ("notes", "expressions")
+    }
     notes: list[str] = []
+    targets: list[Target] = []
     vertex_count = uv_count = 0
     for part in scene.parts:
         skin_joints = np.array([joint_of[int(node)] for node in scene.skins[part.skin].joints])
@@ -206,11 +213,30 @@ def _merge(scene: Scene, bind: Bind) -> _Mesh:
         columns["uv"].append(part.uv)
         columns["uv_faces"].append(np.where(part.uv_faces < 0, -1, part.uv_faces + uv_count)[:, turn])
         columns["face_material"].append(np.full(len(part.faces), part.material, np.int32))
+        targets += _moved(scene, part, vertices, bind=bind, joints=skin_joints, before=vertex_count)
         colors = np.ones((len(part.faces), 3, 4)) if part.colors is None else part.colors
         columns["colors"].append(colors[:, turn])
         vertex_count += len(vertices)
         uv_count += len(part.uv)
-    return _Mesh(**{name: np.concatenate(column) for name, column in columns.items()}, notes=tuple(notes))
+    whole = {name: np.concatenate(column) for name, column in columns.items()}
+    expressions, idle = joined_targets(targets, size=float(np.ptp(whole["vertices"], axis=0).max()))
+    return _Mesh(**whole, expressions=expressions, notes=(*notes, *idle))
+
+
+def _moved(scene: Scene, part: Part, vertices: Array, *, bind: Bind, joints: Array, before: int) -> list[Target]:
+    """A part's targets in the bind pose, of vertices that are counted from `before`."""
+    found = []
+    for target in part.targets:
+        at = target.vertices
+        if len(at):
+            there = replace(
+                part, positions=part.positions[at] + target.offsets, joints=part.joints[at], weights=part.weights[at]
+            )
+            offsets = _place(scene, there, bind=bind, joints=joints)[0] - vertices[at]
+            found.append(Target(target.name, before + at, offsets))
+        else:
+            found.append(Target(target.name, at, target.offsets))
+    return found
 
 
 def _place(scene: Scene, part: Part, *, bind: Bind, joints: Array) -> tuple[Array, bool]:
@@ -242,6 +268,7 @@ def _weld(mesh: _Mesh) -> _Mesh:
             np.round(mesh.vertices / (WELD * size)),
             mesh.indices,
             np.round(mesh.weights / WEIGHT_STEP),
+            *([] if mesh.expressions is None else [fingerprints(mesh.expressions, len(mesh.vertices), size=size)]),
         ],
         axis=1,
     )
@@ -263,6 +290,7 @@ def _weld(mesh: _Mesh) -> _Mesh:
         vertices=mesh.vertices[rows],
         indices=mesh.indices[rows],
         weights=mesh.weights[rows],
+        expressions=None if mesh.expressions is None else mesh.expressions.at(rows),
         faces=faces,
         uv=uv,
         uv_faces=uv_faces,

@@ -50,6 +50,7 @@ def _seen(
         positions=part.positions[used],
         joints=part.joints[used],
         weights=part.weights[used],
+        targets=tuple(target.at(used) for target in part.targets),
         faces=faces.reshape(-1, 3),
         uv_faces=part.uv_faces[seen],
         colors=None if part.colors is None else part.colors[seen],

@@ -31,12 +31,13 @@ def resized(surfaces: Surfaces, size: FigureSize, path: Path) -> Surfaces:
                 f"--scale {size.scale:g}: makes the character of {path} measure {extent:.3g} m, "
                 f"expected {LEAST:g} to {MOST:g}"
             )
-    skeleton, source = surfaces.skeleton, surfaces.source
+    skeleton, source, expressions = surfaces.skeleton, surfaces.source, surfaces.expressions
     scaling = np.diag([factor, factor, factor, 1.0])
     return replace(
         surfaces,
         skeleton=replace(skeleton, bind_translations=factor * skeleton.bind_translations),
         vertices=factor * surfaces.vertices,
+        expressions=None if expressions is None else replace(expressions, offsets=factor * expressions.offsets),
         clips=tuple(replace(clip, translations=factor * clip.translations) for clip in surfaces.clips),
         source=None if source is None else replace(source, scene=carried(source.scene, scaling)),
         unit=factor * surfaces.unit,

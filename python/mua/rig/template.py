@@ -16,6 +16,7 @@ ATTEMPTS = 6  # attempts: how many vertices a number of triangles leaves is only
 UV_WEIGHT = 4.0  # weight of an error in UV relative to the distance on the surface that it stands for
 SKIN_WEIGHT = 0.5  # share of the character's size: the error of a vertex that moves with a wrong joint
 SKIN_DIRECTIONS = 24  # dimensions of the space of skin weights; the library takes 32 attributes
+FACE_DIRECTIONS = 6  # of the space of expressions' offsets; UVs take the other two
 NO_ERROR_LIMIT = c_float(1e9)  # only the number of triangles ends the decimation
 
 
@@ -33,12 +34,12 @@ class Template:
 def make_template(character: Character, *, vertices: int = 5000) -> Template:
     """Decimate a character's mesh to about `vertices` by edge collapses that keep UV seams and chart borders.
 
-    The quadrics measure positions, UVs and skin weights together (Garland and Heckbert 1998), so that chart borders and
-    the bends at joints stay where they are.
+    The quadrics measure positions, UVs, skin weights and expressions together (Garland and Heckbert 1998), so that
+    chart borders, the bends at joints, lips and lids stay where they are.
     """
     mesh = character.mesh
     if len(mesh.vertices) > DENSE_ENOUGH * vertices:
-        mesh = _decimate(mesh, vertices, _skin_directions(character))
+        mesh = _decimate(mesh, vertices, _skin_directions(character), _face_directions(character))
     kept, faces = np.unique(mesh.faces, return_inverse=True)
     uv_kept, uv_faces = np.unique(mesh.uv_faces, return_inverse=True)
     return Template(
@@ -63,18 +64,36 @@ def _skin_directions(character: Character) -> Array:
     return weights @ np.linalg.eigh(weights.T @ weights)[1][:, -SKIN_DIRECTIONS:]
 
 
+def _face_directions(character: Character) -> Array:
+    """The principal components [V, n] of how far the expressions move the vertices, metres; no column without any."""
+    expressions, count = character.expressions, len(character.mesh.vertices)
+    if expressions is None:
+        return np.zeros((count, 0))
+    vertices, row = np.unique(expressions.vertices, return_inverse=True)
+    offsets = np.zeros((len(vertices), len(expressions), 3))
+    offsets[row, np.repeat(np.arange(len(expressions)), np.diff(expressions.starts))] = expressions.offsets
+    moved = offsets.reshape(len(vertices), -1)
+    directions = np.linalg.eigh(moved.T @ moved)[1][:, -FACE_DIRECTIONS:]
+    found = np.zeros((count, directions.shape[1]))
+    found[vertices] = moved @ directions
+    return found
+
+
 def _decimate(
     mesh: Mesh,
     vertices: int,
     skin: Array,  # [V, n]
+    face: Array,  # [V, m] metres
 ) -> Mesh:
     """The mesh with fewer triangles between about `vertices` of the same vertices."""
     corners = np.stack([mesh.faces.ravel(), mesh.uv_faces.ravel()], axis=1)
     pairs, index = np.unique(corners, axis=0, return_inverse=True)  # a vertex once for each of its UVs
     positions = mesh.vertices[pairs[:, 0]].astype(np.float32)
     metres_per_uv = np.sqrt(areas(mesh.vertices[mesh.faces]).sum() / max(areas(mesh.uv[mesh.uv_faces]).sum(), 1e-12))
-    uv = mesh.uv[pairs[:, 1]] * (UV_WEIGHT * metres_per_uv / meshoptimizer.simplify_scale(positions))
-    attributes = np.column_stack([uv, skin[pairs[:, 0]] * SKIN_WEIGHT]).astype(np.float32)
+    extent = meshoptimizer.simplify_scale(positions)
+    uv = mesh.uv[pairs[:, 1]] * (UV_WEIGHT * metres_per_uv / extent)
+    skin, face = skin[pairs[:, 0]] * SKIN_WEIGHT, face[pairs[:, 0]] / extent
+    attributes = np.column_stack([uv, skin, face]).astype(np.float32)
     triangles = len(mesh.faces) * vertices / len(mesh.vertices)
     for _ in range(ATTEMPTS):
         left = pairs[_collapse(index.ravel(), positions, attributes, triangles=int(triangles))]

@@ -16,7 +16,11 @@ UNREAD = {  # fields that are not looked at
     *("asset", "cameras", "camera", "extras", "skeleton", "mimeType", "minFilter", "doubleSided", "metallicFactor"),
     *("roughnessFactor", "metallicRoughnessTexture", "normalTexture", "occlusionTexture"),
 }
-UNDECLARED: dict[type, dict[str, Kind]] = {pygltflib.Node: {"weights": [float]}}
+UNDECLARED: dict[type, dict[str, Kind]] = {
+    pygltflib.Node: {"weights": [float]},
+    pygltflib.Mesh: {"extras": object},
+    pygltflib.Primitive: {"extras": object},
+}
 WORDS = {int: "a whole number", float: "a number", str: "a string", bool: "true or false", dict: "an object"}
 
 
@@ -77,6 +81,8 @@ def _value(raw: Any, kind: Kind, where: str) -> Any:
         if not isinstance(raw, list):
             raise ValueError(f"{where} is {_short(raw)}, expected an array")
         return [_value(item, kind[0], f"{where}[{index}]") for index, item in enumerate(raw)]
+    if kind is object:  # whoever reads the field checks what is in it
+        return raw
     if kind not in WORDS:
         found = read_object(raw, kind, where)
         return vars(found) if kind is Extensions else found

@@ -8,7 +8,9 @@ from mua.arrays import Array
 from mua.characters.gltf.compression import decode_draco
 from mua.characters.gltf.document import COMPONENT_TYPES, Document
 from mua.characters.gltf.materials import Coordinates
+from mua.characters.gltf.morphs import Morphs
 from mua.characters.gltf.nodes import node_name
+from mua.characters.gltf.vrm import NO_VRM, Vrm
 from mua.characters.messages import Messages
 from mua.scene import Part
 
@@ -58,6 +60,7 @@ def read_parts(
     bones: int | None,
     coordinates: tuple[Coordinates, ...],
     messages: Messages,
+    vrm: Vrm = NO_VRM,
 ) -> list[Part]:
     """The primitives of a node's mesh, on a skin of `bones` joints; what is left out goes to `messages`.
 
@@ -66,7 +69,7 @@ def read_parts(
     source = document.gltf.nodes[node]
     mesh = document.item("meshes", source.mesh, field=f"nodes[{node}].mesh")
     name = mesh.name or f"mesh{source.mesh}"
-    morphs = source.weights or mesh.weights or []
+    morphs = Morphs(document, node, vrm)
     parts = []
     for p, primitive in enumerate(mesh.primitives or []):
         where = f"meshes[{source.mesh}].primitives[{p}]"
@@ -86,9 +89,7 @@ def read_parts(
         if uv is None and coordinates[material].needed:
             messages.add("Meshes without the texture coordinates that their material asks for: {}.", name)
         positions = geometry["POSITION"].astype(float)
-        if primitive.targets:
-            messages.add("Morph targets keep their weights of the rest pose, in meshes: {}.", name)
-            positions += _morphed(document, primitive.targets, morphs, where, count=len(positions))
+        positions, targets = morphs.applied(primitive, positions, where, messages)
         parts.append(
             Part(
                 name=name,
@@ -103,24 +104,10 @@ def read_parts(
                 weights=weights,
                 node=node_name(document, node),
                 colors=_colors(geometry, faces, coordinates[material]),
+                targets=targets,
             )
         )
     return parts
-
-
-def _morphed(document: Document, targets: Any, weights: Any, where: str, *, count: int) -> Array:
-    """How far [V, 3] the targets move the vertices at these weights, of which missing ones are 0."""
-    if not np.isfinite(weights).all():
-        raise document.error(f"{where} is morphed by the weights {weights}, expected finite numbers")
-    moved = np.zeros((count, 3))
-    for t, (target, weight) in enumerate(zip(targets, weights, strict=False)):
-        if weight and target.POSITION is not None:
-            field = f"{where}.targets[{t}].POSITION"
-            offsets = document.accessor(target.POSITION, field=field, types=("VEC3",))
-            if len(offsets) != count:
-                raise document.error(f"{field} holds {len(offsets)} elements for {count} vertices")
-            moved += weight * offsets
-    return moved
 
 
 def _colors(geometry: dict[str, Array], faces: Array, reads: Coordinates) -> Array | None:

@@ -72,12 +72,13 @@ def _meshes(document: Document, tree: Tree) -> Scene:
         },
     )
     parts: list[Part] = []
+    parts_of = partial(read_parts, document, coordinates=coordinates, messages=messages, vrm=vrm)
     for node in _drawn(document, tree, vrm, messages):
         skin = document.gltf.nodes[node].skin
         if skin is not None:
             document.item("skins", skin, field=f"nodes[{node}].skin")
             bones = len(skins[skin].joints)
-            parts += read_parts(document, node, skin=skin, bones=bones, coordinates=coordinates, messages=messages)
+            parts += parts_of(node, skin=skin, bones=bones)
             skins[skin] = replace(skins[skin], quantised=skins[skin].quantised or is_quantised(document, node))
         if skin is None or has_unweighted(document, node):
             holder = holders.of(node)
@@ -86,7 +87,7 @@ def _meshes(document: Document, tree: Tree) -> Scene:
                 continue
             skins.append(Skin(np.array([holder]), (np.linalg.inv(tree.world[holder]) @ tree.world[node])[None], True))
             own = len(skins) - 1
-            parts += read_parts(document, node, skin=own, bones=None, coordinates=coordinates, messages=messages)
+            parts += parts_of(node, skin=own, bones=None)
     used = sorted({part.skin for part in parts})
     parts = [replace(part, skin=used.index(part.skin)) for part in parts]
     humanoid = _at_rest(tree, sorted(set(vrm.bones.values())))  # joints also where no mesh hangs on them

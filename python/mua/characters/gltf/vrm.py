@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from mua.characters.gltf.document import Document
+from mua.characters.gltf.vrm_expressions import VrmExpression, read_expressions
 
 FIRST, SECOND, ANIMATION = "VRM", "VRMC_vrm", "VRMC_vrm_animation"
 SPRINGS, CONSTRAINT, MTOON = "VRMC_springBone", "VRMC_node_constraint", "VRMC_materials_mtoon"
@@ -39,12 +40,16 @@ class Vrm:
     bones: Mapping[str, int] = field(default_factory=dict)  # humanoid bone to glTF node
     hidden_nodes: frozenset[int] = frozenset()  # nodes whose meshes only the wearer's own camera shows
     hidden_meshes: frozenset[int] = frozenset()
+    expressions: tuple[VrmExpression, ...] = ()
     notes: tuple[str, ...] = ()
 
     @property
     def roles(self) -> dict[int, str]:
         """The role of each glTF node that is a humanoid bone with one."""
         return {node: ROLES[bone] for bone, node in self.bones.items() if bone in ROLES}
+
+
+NO_VRM = Vrm()
 
 
 def read_vrm(document: Document) -> Vrm:
@@ -56,8 +61,10 @@ def read_vrm(document: Document) -> Vrm:
             vrm = _table(document, extensions[name], where)
             bones = _bones(document, vrm, where, listed=name == FIRST)
             nodes, meshes = _first_person(document, vrm, where)
-            return Vrm(bones, nodes, meshes, (*_credit(vrm), *_not_carried(document, vrm, extensions)))
-    return Vrm()
+            expressions, unlike = read_expressions(document, vrm, where)
+            notes = (*_credit(vrm), *_not_carried(document, vrm, extensions), *unlike)
+            return Vrm(bones, nodes, meshes, expressions, notes)
+    return NO_VRM
 
 
 def is_toon(material: Any) -> bool:
@@ -123,8 +130,6 @@ def _not_carried(document: Document, vrm: dict[str, Any], extensions: dict[str, 
     """A sentence for each thing that moves a VRM avatar at run time and is not in a baked one."""
     springs = extensions.get(SPRINGS) or vrm.get("secondaryAnimation") or {}
     chains = springs.get("springs") or springs.get("boneGroups") if isinstance(springs, dict) else None
-    master = vrm.get("blendShapeMaster") or {}
-    faces = vrm.get("expressions") or (master.get("blendShapeGroups") if isinstance(master, dict) else None)
     nodes = document.gltf.nodes or []
     constrained = sum(1 for node in nodes if CONSTRAINT in (node.extensions or {}))
     notes = []
@@ -133,8 +138,6 @@ def _not_carried(document: Document, vrm: dict[str, Any], extensions: dict[str, 
             f"The avatar's {len(chains)} spring bone groups are left out: what they swing keeps its place, "
             f"and the simulation moves what hangs loose."
         )
-    if faces:
-        notes.append("The avatar's facial expressions (blend shapes) are left out; the face stays neutral.")
     if constrained:
         notes.append(
             f"The constraints on {constrained} of the avatar's nodes are left out; clips that include their effect are "

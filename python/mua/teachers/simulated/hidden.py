@@ -1,4 +1,4 @@
-"""What texels show that no view can reach: teeth behind lips that no joint opens, skin in a shoe, pages under a cover.
+"""What texels show that no view can reach: teeth behind lips that nothing opens, skin in a shoe, pages under a cover.
 
 Their splats shine through what lies close above them, since splats are sorted by their centres alone, and fill the gaps
 of coarse ones. They show the colour of what is seen instead.
@@ -6,6 +6,9 @@ of coarse ones. They show the colour of what is seen instead.
 
 # mypy: disable-error-code="index, operator, attr-defined, no-untyped-def, var-annotated"
 # (the body of the kernel is Warp's language, not Python)
+
+from collections.abc import Callable, Iterator
+from functools import partial
 
 import numpy as np
 import warp as wp
@@ -22,6 +25,7 @@ DEVICE = "cpu"
 DIRECTIONS = 48  # in which a point looks out, others in each pose
 POSES = 8  # in which joints are turned at random, beside the bind pose
 TURN = np.radians(120)  # of a joint, at most
+WELL_MOVED = 0.1  # of the farthest: vertices that an expression moves less uncover nothing
 LIFT = 5e-4  # metres on a person, from which a ray starts: what lies closer is the surface itself
 
 start()
@@ -51,24 +55,45 @@ def showing_instead(
     solid: Array,  # [N] bool: texels that nothing shows through
 ) -> Array:
     """The texel [N] whose colour each one shows: its own, or that of the nearest solid one that can be seen."""
-    surface, skeleton = SkinnedSurface(character), character.skeleton
     clear = np.isin(character.mesh.faces, corners[~solid]).all(axis=1)
     faces = character.mesh.faces[~clear]
     lift = LIFT * float(np.ptp(character.mesh.vertices, axis=0).max())
     hidden = np.arange(len(corners))
     rng = np.random.default_rng(0)
-    for turned in _poses(character, rng):
-        places = surface.posed(skeleton.skinning(turned, skeleton.bind_translations)).places
-        points = np.einsum("nk,nkc->nc", barycentrics[hidden], places[corners[hidden]])
+    own_points = np.einsum("nk,nkc->nc", barycentrics, character.mesh.vertices[corners])
+    for places, reached in _shapes(character, rng):
+        asked = np.full(len(hidden), True) if reached is None else reached(own_points[hidden])
+        points = np.einsum("nk,nkc->nc", barycentrics[hidden[asked]], places[corners[hidden[asked]]])
         away = rng.standard_normal((DIRECTIONS, 3))
         away /= np.linalg.norm(away, axis=1, keepdims=True)
-        hidden = hidden[~_seen(points, places, faces, away=away, lift=lift)]
+        asked[asked] = _seen(points, places, faces, away=away, lift=lift)
+        hidden = hidden[~asked]
     shown, own = np.arange(len(corners)), np.ones(len(corners), bool)
     own[hidden] = False
     if len(hidden) and (own & solid).any():
-        points = np.einsum("nk,nkc->nc", barycentrics, character.mesh.vertices[corners])
-        shown[hidden] = np.flatnonzero(own & solid)[cKDTree(points[own & solid]).query(points[hidden])[1]]
+        seen = np.flatnonzero(own & solid)
+        shown[hidden] = seen[cKDTree(own_points[seen]).query(own_points[hidden])[1]]
     return shown
+
+
+def _shapes(character: Character, rng: np.random.Generator) -> Iterator[tuple[Array, Callable[[Array], Array] | None]]:
+    """The surface [V, 3] in the bind pose, with joints turned at random, and in each of the character's expressions.
+
+    With an expression comes which of some points [n, 3] of the bind pose it may uncover; None: any.
+    """
+    surface, skeleton, bind = SkinnedSurface(character), character.skeleton, character.mesh.vertices
+    for turned in _poses(character, rng):
+        yield surface.posed(skeleton.skinning(turned, skeleton.bind_translations)).places, None
+    if character.expressions is not None:
+        for alone in np.eye(len(character.expressions)):
+            moved = character.expressions.displacement(alone, vertices=len(bind))
+            yield bind + moved, partial(_within_reach, bind, np.linalg.norm(moved, axis=1))
+
+
+def _within_reach(bind: Array, moved: Array, points: Array) -> Array:
+    """Which points [n] are no farther from a vertex than the farthest vertex moves, of those that move that far."""
+    tree = cKDTree(bind[moved > WELL_MOVED * moved.max()])
+    return np.asarray(tree.query(points, distance_upper_bound=float(moved.max()))[0] < np.inf)
 
 
 def _poses(character: Character, rng: np.random.Generator) -> list[Array]:

@@ -48,13 +48,27 @@ class StillTeacher:
         coarse = self._coarse(canonical - bind)
         turn, strain = self._surface(moved)
         turn = rotation.multiply(rotation.conjugate(dual[:, :4]), turn)
-        turn = rotation.normalize(self._smooth_turn(np.where(turn[:, :1] < 0, -turn, turn)))
+        turn = rotation.normalize(self._smooth_turn(_upside(turn)))
+        face = self._face(pose)
+        if face is not None:  # which moves the surface before joints do, and turns it as sharply as it does
+            coarse = coarse + face[self._template]
+            moved = moved + self._skinned.carried(joints, face)
+            canonical = transform(rotation.dual_inverse(dual), moved)
+            turn = _upside(rotation.multiply(turn, self._surface(bind + face)[0]))
+            strain = self._surface(moved)[1]
         light = self._light(joints, dual, moved, turn)
         texture = self._texels.texture(canonical - bind, coarse, turn=turn, moved=moved, strain=strain, light=light)
         mesh = (self.rig.mesh.vertices + coarse).astype(np.float32)
         places = self._texels.places
         straighten(texture, self.rig, joints=joints, mesh=mesh, moved=moved, canonical=canonical, places=places)
         return TeacherFrame(pose=pose, mesh=mesh, texture=texture)
+
+    def _face(self, pose: Pose) -> Array | None:
+        """How far [V, 3] the pose's expressions move the surface in the bind pose; None where they do not."""
+        expressions, weights = self._character.expressions, pose.expressions
+        if expressions is None or weights is None or not weights.any():
+            return None
+        return expressions.displacement(weights, vertices=len(self._character.mesh.vertices))
 
     def _coarse(self, displacement: Array) -> Array:
         """The part [T, 3] of a displacement [V, 3] that moves the canonical mesh; the texels' offsets take the rest."""
@@ -63,3 +77,8 @@ class StillTeacher:
     def _light(self, joints: Array, dual: Array, moved: Array, turn: Array) -> Light:
         """Light on the surface at `moved` [V, 3], in canonical space."""
         return Light(gain=np.ones_like(moved), sheen=np.zeros_like(moved))
+
+
+def _upside(q: Array) -> Array:
+    """The same rotations [V, 4] with w >= 0."""
+    return np.where(q[:, :1] < 0, -q, q)

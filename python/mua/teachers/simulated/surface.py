@@ -3,6 +3,8 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+import numpy as np
+
 from mua.arrays import Array
 from mua.pose.clip import Clip, Stretches
 from mua.rig.character import Character
@@ -41,3 +43,11 @@ class SkinnedSurface:
         bind = self._character.mesh.vertices
         shape = bind if stretches is None else stretched(self._character, stretches, frame, bind)
         return MovedSurface(joints, self._skinning(joints), self._skinning.linear(joints, shape))
+
+    def carried(
+        self,
+        joints: Array,  # [J, 8] bind pose to world
+        offsets: Array,  # [V, 3] of the vertices, bind pose
+    ) -> Array:
+        """Offsets [V, 3] in the world."""
+        return self._skinning.linear(joints, offsets) - self._skinning.linear(joints, np.zeros_like(offsets))

@@ -50,8 +50,7 @@ class SimulatedTeacher(StillTeacher):
             yield from (self.frame(pose) if frame in wanted else pose for frame, pose in enumerate(poses))
             return
         for frame, moved in enumerate(self._moving.frames(clip)):
-            pose = Pose(clip.rotations[frame], clip.translations[frame])
-            yield self._whole(pose, moved) if frame in wanted else pose
+            yield self._whole(clip.pose(frame), moved) if frame in wanted else clip.pose(frame)
 
     def _coarse(self, displacement: Array) -> Array:
         """The long waves [T, 3] of a displacement [V, 3], which the canonical mesh takes on."""
