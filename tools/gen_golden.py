@@ -29,6 +29,7 @@ CASES = {
     "blend_subbands": golden_decoding.blend_subbands_cases,
     "inverse_dwt": golden_decoding.inverse_dwt_cases,
     "dq_skinning": golden_decoding.dq_skinning_cases,
+    "expressions": golden_decoding.expressions_cases,
     "splat_project": golden_sorting.splat_project_cases,
     "splat_sort": golden_sorting.splat_sort_cases,
 }

@@ -13,7 +13,7 @@ from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.avatar.decode import Splats, express
 from mua.errors import InputError
-from mua.kernels.expressions import LEAST, MOST_STRETCH, bend_texels, by_vertex, reached
+from mua.kernels.expressions import LEAST, MOST_STRETCH, bend_texels, bend_triangles, by_vertex, reach_of
 from mua.pose.resample import resample
 from mua.pose.skeleton import Pose
 from mua.rig.expressions import Expressions
@@ -39,11 +39,15 @@ def soup(rng: np.random.Generator, count: int) -> tuple[Array, Array, Array]:
     return corners.reshape(-1, 3), rng.normal(0, 0.5, (3 * count, 3)), np.arange(3 * count).reshape(-1, 3)
 
 
+def bend(mesh: Array, moved: Array, faces: Array, triangles: Array, texture: Array) -> Array:
+    return bend_texels(*bend_triangles(mesh, moved, faces), triangles, texture)
+
+
 def assert_bends_as_solved(dtype: type, bound: float) -> None:
     rng = np.random.default_rng(0)
     mesh, moved, faces = (a if a.dtype.kind == "i" else a.astype(dtype) for a in soup(rng, 300))
     texture: Array = rng.normal(size=(300, 23)).astype(dtype)
-    bent = bend_texels(mesh, moved, faces, np.arange(300), texture)
+    bent = bend(mesh, moved, faces, np.arange(300), texture)
     assert bent.dtype == dtype
     for texel, found, face in zip(texture.astype(float), bent.astype(float), faces, strict=True):
         before = mesh[face].astype(float)
@@ -75,7 +79,7 @@ def test_a_rigid_motion_turns_a_texel_and_leaves_its_size() -> None:
     turn = Rotation.random(rng=2)
     moved = turn.apply(mesh) + np.array([1, 2, 3]) - mesh
     texture = rng.normal(size=(20, 23))
-    bent = bend_texels(mesh, moved, faces, np.arange(20), texture)
+    bent = bend(mesh, moved, faces, np.arange(20), texture)
     np.testing.assert_allclose(bent[:, 0:3], turn.apply(texture[:, 0:3]), rtol=0, atol=1e-9)
     np.testing.assert_allclose(bent[:, 7:10], texture[:, 7:10], rtol=0, atol=1e-9)
     own, found = (Rotation.from_quat(t[:, 3:7], scalar_first=True) for t in (texture, bent))
@@ -87,7 +91,7 @@ def test_a_splat_grows_with_its_triangle_up_to_a_bound_and_keeps_its_thickness()
     texture = np.zeros((1, 23))
     texture[:, 3] = 1
     for factor, grown in ((2.0, 2.0), (0.5, 0.5), (1000.0, MOST_STRETCH), (0.001, 1 / MOST_STRETCH)):
-        bent = bend_texels(corners, (factor - 1) * corners, faces, np.zeros(1, int), texture)
+        bent = bend(corners, (factor - 1) * corners, faces, np.zeros(1, int), texture)
         np.testing.assert_allclose(np.exp(bent[0, 7:10]), [grown, grown, 1], rtol=ROUNDING)
 
 
@@ -96,7 +100,7 @@ def test_texels_of_triangles_that_vanish_stay_as_they_are() -> None:
     texture = np.random.default_rng(3).normal(size=(1, 23))
     line, point, thin = flat * [1, 0, 0], flat * 0, flat * [1, LEAST / 2, 1]
     for before, after in [(flat, line), (flat, point), (line, flat), (point, flat), (thin, flat), (flat, thin)]:
-        bent = bend_texels(before, after - before, faces, np.zeros(1, int), texture)
+        bent = bend(before, after - before, faces, np.zeros(1, int), texture)
         np.testing.assert_array_equal(bent, texture)
 
 
@@ -119,7 +123,15 @@ def test_lists_by_vertex_hold_every_entry_once_and_sum_to_the_same() -> None:
 def test_nothing_is_reached_where_nothing_moves() -> None:
     targets = by_vertex(np.zeros(4, int), np.zeros(0, int), np.zeros((0, 3)))
     assert (len(targets.vertices), targets.starts.tolist()) == (0, [0])
-    assert len(reached(targets.vertices, np.array([[0, 1, 2]]), np.zeros(9, int))) == 0
+    reach = reach_of(targets.vertices, np.array([[0, 1, 2]]), np.zeros(9, int))
+    assert (reach.triangles.shape, reach.texels.shape) == ((0,), (0, 2))
+
+
+def test_in_reach_are_the_texels_of_the_triangles_of_moved_vertices() -> None:
+    faces = np.array([[0, 1, 2], [1, 2, 3], [3, 4, 5], [2, 4, 6]])
+    reach = reach_of(np.array([0, 3]), faces, np.array([3, 2, 0, 1, 2, 3]))
+    assert reach.triangles.tolist() == [0, 1, 2]
+    assert reach.texels.tolist() == [[1, 2], [2, 0], [3, 1], [4, 2]]
 
 
 def arrays(splats: Splats) -> dict[str, Array]:
@@ -149,7 +161,7 @@ def test_weights_of_0_give_the_bytes_of_the_avatar_without(avatar: Avatar, level
 def test_only_texels_in_reach_change_and_they_do(avatar: Avatar, level: int) -> None:
     shown = avatar.at_level(level)
     plain, spoken = (shown.decode("wave", 3, expressions=named) for named in ({}, {"jawOpen": 0.7}))
-    near = reached(np.array([6, 7, 8]), shown.rig.mesh.faces, shown.rig.texels.triangles)
+    near = reach_of(np.array([6, 7, 8]), shown.rig.mesh.faces, shown.rig.texels.triangles).texels[:, 0]
     far = np.setdiff1d(np.arange(len(plain)), near)
     assert len(near)
     assert len(far)

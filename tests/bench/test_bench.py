@@ -60,6 +60,17 @@ def test_upsampling_costs_what_its_valid_texels_need() -> None:
     assert cost(levels) == Work(bytes=moved, flops=35 * (2 * 3 + 2 * 3 // 4 + 1))
 
 
+def test_a_face_costs_what_its_entries_and_the_texels_in_reach_need() -> None:
+    entries = {"vertices": 4 * 10, "starts": 4 * 11, "expressions": 4 * 25, "offsets": 12 * 25, "weights": 4 * 3}
+    vertices = bound("SumTargets", entries | {"moved": 12 * 99, "mesh": 12 * 99}, vertex_count=10)
+    assert cost(vertices) == Work(bytes=40 + 44 + 100 + 300 + 12 + 36 * 10, flops=2 * 75 + 30)
+    read = {"triangles": 4 * 6, "faces": 12 * 7, "mesh": 12 * 9, "moved": 12 * 9, "bends": 64 * 6}
+    triangles = bound("BendTriangles", read, triangle_count=6)
+    assert cost(triangles) == Work(bytes=24 + 84 + 2 * 108 + 384, flops=6 * work.BEND_TRIANGLE)
+    texels = bound("BendTexels", {"reached": 8 * 5, "bends": 64 * 6, "texel_channels": 9}, texel_count=5)
+    assert cost(texels) == Work(bytes=40 + 384 + 5 * (24 + 24), flops=5 * work.BEND_TEXEL)
+
+
 def projected(texels: int, vertices: int, faces: int, eyes: int) -> Bound:
     read = {"mesh": 12 * vertices, "vertex_dq": 32 * vertices, "faces": 12 * faces, "texels": 8 * texels}
     return bound("SplatProject", read, texel_count=texels, eyes=eyes)

@@ -62,7 +62,8 @@ class PosedFrame:
         self.cameras = cameras_of(avatar.rig, clip, eyes=eyes, screen=screen)
         self.bounds = self.exact.bounds
         commands = device.commands()
-        gpu.decode(commands, clip.rotations[window], clip.translations[window], level=level)
+        weights = clip.pose(index).expressions
+        gpu.decode(commands, clip.rotations[window], clip.translations[window], level=level, expressions=weights)
         frame.sort(commands, self.cameras)
         commands.submit()
         self.visible = int(frame.arguments.read()[VISIBLE_WORD])

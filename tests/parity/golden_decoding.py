@@ -1,6 +1,7 @@
 """Golden cases of the kernels from pose to channels, with inputs and bounds of the kernels' own tests."""
 
 import numpy as np
+from bent_cases import BENT_BOUND, TURNED_BOUND, random_targets, random_texture, triangles
 from dwt_cases import taps, upsampling_bound
 from golden_case import UNTOUCHED, UNWRITTEN, Case, Expected, halves
 from layer_cases import layer, shader_bound
@@ -16,6 +17,7 @@ from stored import STORAGES, groups, store
 from mua.asset.tensors import Element
 from mua.kernels.blend_subbands import blend_detail, blend_ll
 from mua.kernels.dq_skinning import blend_vertices
+from mua.kernels.expressions import bend_texels, bend_triangles
 from mua.kernels.inverse_dwt import (
     inverse_dwt,
     pack_planes,
@@ -43,6 +45,10 @@ def inverse_dwt_cases() -> list[Case]:
 
 def dq_skinning_cases() -> list[Case]:
     return [_vertices()]
+
+
+def expressions_cases() -> list[Case]:
+    return [_targets(), _triangles(), _texels()]
 
 
 def _layer(storage: Element, *, relu: int) -> Case:
@@ -204,4 +210,98 @@ def _vertices() -> Case:
             "vertex_dq": np.full((131, 8), UNTOUCHED),
         },
         (Expected("vertex_dq", "float", blend_vertices(joints.astype(float), indices, weights), BLEND_BOUND),),
+    )
+
+
+def _targets() -> Case:
+    """Every other vertex is moved."""
+    rng, count, expressions = np.random.default_rng(6), 67, 5
+    targets = random_targets(rng, 2 * np.arange(count), expressions)
+    weights = rng.random(expressions).astype(np.float32)
+    mesh = rng.uniform(-1, 1, (2 * count, 3)).astype(np.float32)
+    moved = np.zeros((count, 3))
+    entries = weights[targets.expressions, None].astype(float) * targets.offsets
+    np.add.at(moved, np.repeat(np.arange(count), np.diff(targets.starts)), entries)
+    bound = 2 * expressions * ULP * float(np.abs(entries).max()) * expressions
+    others = {"first": 3, "length": 3, "period": 6}
+    untouched = np.full((2 * count, 3), UNTOUCHED)
+    return Case(
+        "five expressions",
+        "SumTargets",
+        groups((count, 64)),
+        {"vertex_count": count},
+        {
+            **{"vertices": targets.vertices.astype(np.uint32), "starts": targets.starts.astype(np.uint32)},
+            **{"expressions": targets.expressions.astype(np.uint32), "offsets": targets.offsets, "weights": weights},
+            **{"moved": untouched, "mesh": mesh},
+        },
+        (
+            Expected("moved", "float", moved, bound, length=3, period=6),
+            Expected("moved", "float", untouched[1::2], **others),
+            Expected("mesh", "float", mesh[::2] + moved, bound + 2 * ULP, length=3, period=6),
+            Expected("mesh", "float", mesh[1::2], **others),
+        ),
+    )
+
+
+def _triangles() -> Case:
+    """The first triangles bend, the others have no area or do not move; one is out of reach."""
+    bent = triangles(np.random.default_rng(7), 70)
+    count, inner = len(bent.faces), bent.bending
+    turns, maps = bend_triangles(bent.mesh.astype(float), bent.moved.astype(float), bent.faces)
+    held = np.concatenate([turns[:, None], np.pad(maps.swapaxes(1, 2), ((0, 0), (0, 0), (0, 1)))], axis=1)
+    return Case(
+        "edges of 0.2 to 2 metres",
+        "BendTriangles",
+        groups((count - 1, 64)),
+        {"triangle_count": count - 1},
+        {
+            "triangles": np.append(np.arange(1, count - 1), 0).astype(np.uint32),
+            **{"faces": bent.faces, "moved": bent.moved, "mesh": bent.mesh + bent.moved},
+            "bends": np.full((count, 4, 4), UNTOUCHED),
+        },
+        (
+            Expected("bends", "float", held[1:inner], BENT_BOUND),
+            Expected("bends", "float", np.zeros((3, 4)), first=16 * (inner - 1), length=4, period=16),
+            Expected("bends", "float", np.full((3, 12), UNTOUCHED), first=16 * (inner - 1) + 4, length=12, period=16),
+            Expected("bends", "float", held[:1], BENT_BOUND, first=16 * (count - 2)),
+            Expected("bends", "float", np.full(16, UNTOUCHED), first=16 * (count - 1)),
+        ),
+    )
+
+
+def _texels() -> Case:
+    """The first texels bend, those after them are on a triangle that does not, the last are out of reach."""
+    rng, count, still, beyond = np.random.default_rng(8), 70, 3, 4
+    bent = triangles(rng, count)
+    turns, maps = bend_triangles(*(a.astype(float) for a in (bent.mesh, bent.moved)), bent.faces)
+    turns, maps = turns.astype(np.float32), maps.astype(np.float32)
+    texels = count + still + beyond
+    places = np.concatenate([rng.permutation(count), np.full(still + beyond, count)])
+    texture = random_texture(rng, texels)
+    halves_of = np.ascontiguousarray(texture.astype(np.float16).reshape(-1, 6, 4).swapaxes(0, 1))
+    words = halves_of.view(np.uint32).reshape(6, texels, 2)
+    exact = bend_texels(*(a.astype(float) for a in (turns, maps)), places, texture.astype(float))[:count]
+    bends = np.concatenate([turns[:, None], np.pad(maps.swapaxes(1, 2), ((0, 0), (0, 0), (0, 1)))], axis=1)
+    written = {"buffer": "texel_channels", "bound": TURNED_BOUND}
+    kept = {"buffer": "texel_channels", "kind": "uint"}
+    return Case(
+        "triangles with edges of 0.2 to 2 metres",
+        "BendTexels",
+        groups((count + still, 64)),
+        {"texel_count": count + still, "splat_count": texels},
+        {
+            "reached": np.stack([np.arange(texels), places], axis=1)[: count + still].astype(np.uint32),
+            **{"bends": bends, "texel_channels": words},
+        },
+        (
+            halves(values=exact[:, 0:4], **written),
+            Expected(values=words[0, count:], first=2 * count, **kept),
+            halves(values=exact[:, 4:8], first=2 * texels, **written),
+            Expected(values=words[1, count:], first=2 * (texels + count), **kept),
+            halves(values=exact[:, 8:10], first=4 * texels, period=2, **written),
+            Expected(values=words[2, :count, 1], first=4 * texels + 1, period=2, **kept),
+            Expected(values=words[2, count:], first=2 * (2 * texels + count), **kept),
+            Expected(values=words[3:], first=6 * texels, **kept),
+        ),
     )

@@ -56,7 +56,7 @@ def desktop(device: Device, file: Path, cameras: Sequence[Camera]) -> list[dict[
     splats = SplatFrame(device, [frame])
     frame.decode(commands, first.rotations, first.translations, aside)
     splats.sort(commands, cameras[:1])
-    frame.begin(then.rotations, then.translations, coarsest(avatar))
+    frame.begin(then.rotations, then.translations, level=coarsest(avatar))
     while frame.parts_left:
         frame.advance(commands)
     frame.show()

@@ -15,6 +15,7 @@ namespace Mua
         [SerializeField] private ComputeShader blendSubbands = null;
         [SerializeField] private ComputeShader inverseDwt = null;
         [SerializeField] private ComputeShader dqSkinning = null;
+        [SerializeField] private ComputeShader expressions = null;
         [SerializeField] private ComputeShader splatProject = null;
         [SerializeField] private ComputeShader splatSort = null;
         [SerializeField] private Shader splat = null;
@@ -27,6 +28,8 @@ namespace Mua
         internal ComputeShader InverseDwt => inverseDwt;
 
         internal ComputeShader DqSkinning => dqSkinning;
+
+        internal ComputeShader Expressions => expressions;
 
         internal ComputeShader SplatProject => splatProject;
 

@@ -15,7 +15,7 @@ PARTS = 4  # parts of a decode, which take about as long each
 ALONE = 2  # parts in a displayed frame of an avatar that is alone in view: half of a decode
 LONGEST = 18  # displayed frames, a quarter of a second at 72 Hz
 
-Moment = Hashable  # the newest pose of a window: a clip and its frame, or a number
+Moment = Hashable  # the newest pose of a window, with its weights of expressions: a clip and its frame, or a number
 Key = int  # tells avatars apart
 
 

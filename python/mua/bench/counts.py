@@ -201,7 +201,7 @@ def _level(device: Device, frame: SplatFrame[AvatarFrame], clip: Clip, level: in
 def _decode_parts(device: Device, avatar: AvatarFrame, clip: Clip, level: int = 0) -> list[tuple[Bound, ...]]:
     """The dispatches of a decode by part."""
     window = avatar.avatar.avatar.encoding.frames(0)
-    avatar.begin(clip.rotations[window], clip.translations[window], level)
+    avatar.begin(clip.rotations[window], clip.translations[window], level=level)
     parts = []
     while avatar.parts_left > 0:
         commands = device.commands()
@@ -217,7 +217,7 @@ def _draw(
     (avatar,) = frame.avatars
     window = avatar.avatar.avatar.encoding.frames(0)
     decoding, commands = device.commands(), device.commands()
-    avatar.decode_channels(decoding, clip.rotations[window], clip.translations[window], level)
+    avatar.decode_channels(decoding, clip.rotations[window], clip.translations[window], level=level)
     decoding.submit()
     avatar.repose(commands, clip.rotations[0], clip.translations[0])
     skeleton = avatar.avatar.avatar.rig.skeleton

@@ -31,6 +31,11 @@ AXES = 30 + 9  # rotation matrix, its scaled columns
 ACTIVATIONS = 3 + 4  # three exponentials, the logistic function
 SKIN = 3 * BLEND_TERM + NORMALIZE_DUAL + 18 + DUAL_TRANSFORM + QUATERNION_PRODUCT + UNIT_QUATERNION + AXES
 SKIN += ACTIVATIONS  # 18: the barycentric point and the offset
+FRAME = 6 + 6 + 3 + 5 + 6 + 6 + 3 + 9  # two edges, length, axis, shear, height's vector, its length, axis, normal
+BEND_TRIANGLE = (
+    9 + 2 * FRAME + 6 + 7 + 18 + 45 + 45 + 45
+)  # before, frames, in-plane map, its rotation; F, R, quaternion
+BEND_TEXEL = UNIT_QUATERNION + 30 + 45 + 3 * (6 + 4) + 30 + QUATERNION_PRODUCT  # axes, F of them, logarithms; offset
 PROJECT_EYE = (
     24 + 15 + 24 + 30 + 15 + 18 + 6 + 25 + 12 + 30 + 27
 )  # eye space, slopes, Jacobian J, A = J x axes, A A^T, axes, pixel, box; direction, turned back, SH
@@ -53,7 +58,7 @@ NOTHING = Work(0, 0)
 
 def work_of(dispatch: Bound, *, share: float) -> Work:
     """Work of one dispatch where some eye sees this share of the splats."""
-    return (DECODING | POSING)[dispatch.kernel](dispatch, share)
+    return (DECODING | EXPRESSING | POSING)[dispatch.kernel](dispatch, share)
 
 
 def total(dispatches: Iterable[Bound], *, share: float) -> Work:
@@ -144,6 +149,25 @@ def scatter_digits(dispatch: Bound, share: float) -> Work:
     return Work(read + UINT * visible + _histograms(count) + UINT * DIGITS, 0)
 
 
+def sum_targets(dispatch: Bound, _: float) -> Work:
+    """Entries and weights read; mesh read and written, and how far it moves written, at each vertex that may move."""
+    (vertices,) = _constants(dispatch, "vertex_count")
+    moved = _bound(dispatch, "vertices", "starts", "expressions", "offsets", "weights") + 3 * 3 * FLOAT * vertices
+    return Work(moved, 2 * dispatch.sizes["offsets"] // FLOAT + 3 * vertices)
+
+
+def bend_triangles(dispatch: Bound, _: float) -> Work:
+    """Faces and vertices, gathered and counted once; a quaternion and a map written for each triangle in reach."""
+    (triangles,) = _constants(dispatch, "triangle_count")
+    return Work(_bound(dispatch, "triangles", "faces", "mesh", "moved", "bends"), triangles * BEND_TRIANGLE)
+
+
+def bend_texels(dispatch: Bound, _: float) -> Work:
+    """What bent each triangle read, and 12 half floats of each texel in reach, which are written too."""
+    (texels,) = _constants(dispatch, "texel_count")
+    return Work(_bound(dispatch, "reached", "bends") + texels * 2 * 3 * BATCH * HALF, texels * BEND_TEXEL)
+
+
 Formula = Callable[[Bound, float], Work]  # work of a dispatch, given the share of the splats that some eye sees
 DECODING: dict[str, Formula] = {  # once for each pose of the clip: from pose to mesh and channels
     "MlpMatmul": mlp_matmul,
@@ -152,6 +176,11 @@ DECODING: dict[str, Formula] = {  # once for each pose of the clip: from pose to
     "BlendDetail": blend_detail,
     "InverseDwt": inverse_dwt,
     "UpsampleTexels": upsample_texels,
+}
+EXPRESSING: dict[str, Formula] = {  # beside these, where a face moves
+    "SumTargets": sum_targets,
+    "BendTriangles": bend_triangles,
+    "BendTexels": bend_texels,
 }
 POSING: dict[str, Formula] = {  # in every displayed frame: from there to sorted splats
     "BlendVertices": blend_vertices,

@@ -95,7 +95,8 @@ class _Decoder:
     def _decode(self, frame: WholeFrame) -> Picture:
         window = self._frame.avatar.avatar.encoding.frames(frame.index)
         commands = self._device.commands()
-        self._frame.decode(commands, frame.clip.rotations[window], frame.clip.translations[window])
+        weights = frame.clip.pose(frame.index).expressions
+        self._frame.decode(commands, frame.clip.rotations[window], frame.clip.translations[window], expressions=weights)
         commands.submit()
         texture = unpack_channels(self._frame.texel_channels.read())
         return Picture(texture, self._frame.mesh.read(np.float32).reshape(-1, 3))

@@ -43,40 +43,63 @@ def by_vertex(
     )
 
 
-def reached(
+@dataclass(frozen=True, eq=False)
+class Reach:
+    """What the vertices of expressions may bend."""
+
+    triangles: Array  # [T] int32 into faces, ascending: those with a corner among the vertices
+    texels: Array  # [K, 2] int32, ascending: texels on them, and their triangle's place among them
+
+
+def reach_of(
     vertices: Array,  # [M] int32 that expressions move
     faces: Array,  # [F, 3] into the vertices
     triangles: Array,  # [N] into faces
-) -> Array:
-    """The texels [K] int32, ascending, whose triangle has a corner among the vertices."""
-    return np.flatnonzero(np.isin(faces, vertices)[triangles].any(axis=1)).astype(np.int32)
+) -> Reach:
+    """The triangles that the vertices move, and the texels on these."""
+    held = np.isin(faces, vertices).any(axis=1)
+    texels = np.flatnonzero(held[triangles])
+    places = (np.cumsum(held) - 1)[triangles[texels]]
+    return Reach(np.flatnonzero(held).astype(np.int32), np.stack([texels, places], axis=1).astype(np.int32))
 
 
 @np.errstate(over="ignore")  # beyond any figure: what overflows is clipped to MOST_STRETCH
-def bend_texels(
+def bend_triangles(
     mesh: Array,  # [V, 3] canonical vertices before they move, metres
     moved: Array,  # [V, 3] how far they move
-    faces: Array,  # [F, 3] into vertices
-    triangles: Array,  # [N] into faces
-    texture: Array,  # [N, 23] raw channels
-) -> Array:
-    """Raw channels [N, 23] on the moved mesh; those of texels none of whose corners moves stay bit for bit."""
-    bent = texture.copy(order="K")  # as it lies in memory: what follows rounds alike
-    at = np.flatnonzero((moved != 0).any(axis=1)[faces].any(axis=1)[triangles])
-    corners = faces[triangles[at]]
-    before, after = Frames.of(mesh[corners]), Frames.of(mesh[corners] + moved[corners])
+    faces: Array,  # [T, 3] into vertices
+) -> tuple[Array, Array]:
+    """Quaternions of R [T, 4] and maps F [T, 3, 3]; all 0 where nothing moves or has no frame."""
+    turns, maps = np.zeros((len(faces), 4), mesh.dtype), np.zeros((len(faces), 3, 3), mesh.dtype)
+    at = np.flatnonzero((moved != 0).any(axis=1)[faces].any(axis=1))
+    before, after = Frames.of(mesh[faces[at]]), Frames.of(mesh[faces[at]] + moved[faces[at]])
     framed = before.holds & after.holds
     at, before, after = at[framed], before.at(framed), after.at(framed)
     along = after.length / before.length  # the in-plane map, (along, shear; 0, across)
     shear = (after.shear - along * before.shear) / before.height
     across = after.height / before.height
-    turn = _turn(before.axes, after.axes, along + across, shear)
-    channels = texture[at]
-    axes = before.axes.swapaxes(1, 2) @ rotation.to_matrix(_unit(channels[:, 3:7]))  # of the splat, in the triangle's
-    x, y, z = axes.swapaxes(0, 1)
-    stretch = _length(along[:, None] * x + shear[:, None] * y, across[:, None] * y, z)
-    bent[at, 0:3] = np.einsum("nij,nj->ni", turn, channels[:, 0:3])
-    bent[at, 3:7] = rotation.multiply(rotation.from_matrix(turn).astype(texture.dtype), channels[:, 3:7])
+    u, v, n = np.moveaxis(after.axes, -1, 0)
+    stretched = np.stack([along[:, None] * u, shear[:, None] * u + across[:, None] * v, n], axis=-1)
+    maps[at] = stretched @ before.axes.swapaxes(1, 2)
+    turns[at] = rotation.from_matrix(_turn(before.axes, after.axes, along + across, shear))
+    return turns, maps
+
+
+@np.errstate(over="ignore")
+def bend_texels(
+    turns: Array,  # [T, 4]
+    maps: Array,  # [T, 3, 3]
+    triangles: Array,  # [N] into both
+    texture: Array,  # [N, 23] raw channels
+) -> Array:
+    """Raw channels [N, 23] on the bent triangles; those on others stay bit for bit."""
+    bent = texture.copy(order="K")  # as it lies in memory: what follows rounds alike
+    at = np.flatnonzero(turns.any(axis=1)[triangles])
+    turn, channels = turns[triangles[at]], texture[at]
+    axes = maps[triangles[at]] @ rotation.to_matrix(_unit(channels[:, 3:7]))
+    stretch = _length(*np.moveaxis(axes, 1, 0))
+    bent[at, 0:3] = rotation.rotate(turn, channels[:, 0:3])
+    bent[at, 3:7] = rotation.multiply(turn, channels[:, 3:7])
     bent[at, 7:10] += np.log(np.clip(stretch, 1 / MOST_STRETCH, MOST_STRETCH))
     return bent
 

@@ -17,12 +17,15 @@ from mua.avatar.model import Model
 from mua.errors import InputError
 from mua.gpu import Buffer, Device
 from mua.gpu.stored import Layout, upload_words
+from mua.kernels.expressions import Targets, by_vertex, reach_of
 from mua.kernels.inverse_dwt import texel_tiles, upsampling_taps, whole_words
 from mua.kernels.splat_project import pack_texels
+from mua.rig.expressions import Expressions
 from mua.rig.rig import Rig
 
 T = TypeVar("T")
 BRANCHES = ("geometry", "appearance")
+NO_EXPRESSIONS = Expressions((), np.zeros(1, np.int32), np.zeros(0, np.int32), np.zeros((0, 3), np.float32))
 
 
 @dataclass(frozen=True)
@@ -101,6 +104,19 @@ class RigBuffers(RigPlaces):
 
 
 @dataclass(frozen=True)
+class ExpressionBuffers:
+    """What moves each vertex that any expression moves (mua.kernels.expressions.Targets)."""
+
+    vertices: Buffer  # [M]
+    starts: Buffer  # [M + 1]
+    expressions: Buffer  # [P]
+    offsets: Buffer  # [P, 3]
+    vertex_count: int  # M
+    triangles: Buffer  # [T] in reach of the vertices
+    triangle_count: int
+
+
+@dataclass(frozen=True)
 class LevelBuffers:
     """The texels of one level of detail (mua.avatar.coarser)."""
 
@@ -111,6 +127,10 @@ class LevelBuffers:
     tile_count: int
     tiles: Buffer  # from mua.kernels.inverse_dwt.texel_tiles
     tile_rows: Buffer
+    reached: (
+        Buffer  # [K, 2] texels that expressions may bend, and their triangle's place (mua.kernels.expressions.Reach)
+    )
+    reached_count: int
     geometry: BranchLevel
     appearance: BranchLevel
 
@@ -124,6 +144,20 @@ def upload_rig(device: Device, rig: Rig) -> RigBuffers:
         ),
         skin_indices=device.buffer(rig.skin_indices.astype(np.uint32), name="template.skin_indices"),
         skin_weights=device.buffer(rig.skin_weights.astype(np.float32), name="template.skin_weights"),
+    )
+
+
+def upload_targets(device: Device, targets: Targets, faces: Array) -> ExpressionBuffers:
+    """Upload expressions. Errors: InputError where a buffer is larger than the device can bind or hold."""
+    triangles = reach_of(targets.vertices, faces, np.zeros(0, np.int32)).triangles
+    return ExpressionBuffers(
+        vertices=device.buffer(targets.vertices.astype(np.uint32), name="expressions.vertices"),
+        starts=device.buffer(targets.starts.astype(np.uint32), name="expressions.starts"),
+        expressions=device.buffer(targets.expressions.astype(np.uint32), name="expressions.vertices"),
+        offsets=device.buffer(targets.offsets.astype(np.float32), name="expressions.offsets"),
+        vertex_count=len(targets.vertices),
+        triangles=device.buffer(triangles.astype(np.uint32), name="expressions.vertices"),
+        triangle_count=len(triangles),
     )
 
 
@@ -151,6 +185,9 @@ class AvatarBuffers:
         self.rec_hi = self._upload(hi.astype(np.float32), "wavelet.rec_hi")
         self.taps = len(lo)  # of geometry and appearance
         self.rig = self._named(lambda: upload_rig(device, rig))
+        held = NO_EXPRESSIONS if rig.expressions is None else rig.expressions
+        self._targets = by_vertex(held.starts, held.vertices, held.offsets)
+        self.expressions = self._named(lambda: upload_targets(device, self._targets, rig.mesh.faces))
         stored = {name: self._stored(tree[name]["static_offset"], f"{name}.static_offset") for name in BRANCHES}
         self._levels = [self._level(self.avatar, self.rig, stored)]
         self._coarser: Model = self.avatar  # from which the last level was made
@@ -172,6 +209,7 @@ class AvatarBuffers:
     def _level(self, avatar: Model, places: RigPlaces, statics: Mapping[str, StoredBuffer]) -> LevelBuffers:
         texels, coarser = avatar.rig.texels, avatar.wavelet.coarser
         tiles, tile_rows = texel_tiles(texels.texels, texels.size)
+        reach = reach_of(self._targets.vertices, avatar.rig.mesh.faces, texels.triangles)
         geometry, appearance = (
             BranchLevel(self._upsampling(len(getattr(avatar, name).details), coarser), statics[name])
             for name in BRANCHES
@@ -184,6 +222,8 @@ class AvatarBuffers:
             tile_count=len(tiles),
             tiles=self._upload(tiles, "texels.texels"),
             tile_rows=self._upload(tile_rows, "texels.texels"),
+            reached=self._upload(reach.texels.astype(np.uint32), "expressions.vertices"),
+            reached_count=len(reach.texels),
             geometry=geometry,
             appearance=appearance,
         )

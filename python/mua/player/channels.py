@@ -5,6 +5,8 @@ Kept a plain list in the order of the kernels, as unity-package/Runtime/ChannelD
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from mua.avatar.decode_turns import PARTS
 from mua.gpu import Buffer, Commands, Device
 from mua.gpu.kernel import Kernel
@@ -17,6 +19,8 @@ LAYER_ROWS, MESH_COLUMNS = 8, 64  # outputs of a group of MlpMatmul and of MlpMa
 LL_PAIRS = 64  # pairs of texels, a word each, of a group of BlendLl
 DETAIL_TILE = 24  # texels along a side of a group of BlendDetail
 COARSE_TILE = 16  # samples along a side that a group of InverseDwt doubles
+EXPRESSED = 64  # vertices of a group of SumTargets, triangles of one of BendTriangles, texels of one of BendTexels
+BEND = 64  # bytes of a bent triangle
 
 
 @dataclass
@@ -27,6 +31,8 @@ class ChannelSet:
     components: Buffer  # [K] components of the descriptor, which the networks read
     mesh: Buffer  # [V, 3] canonical vertices
     texel_channels: Buffer  # [6, N, 4] halves; holds the finest level
+    weights: Buffer  # [E] of expressions
+    expressive: bool = False  # whether one of them is not 0
     outside: float = 0.0  # share of the pose that training did not show (mua.pose.components)
 
 
@@ -46,6 +52,9 @@ class ChannelDecoder:
         self._blend_detail = device.kernel("blend_subbands.compute", "BlendDetail")
         self._inverse_dwt = device.kernel("inverse_dwt.compute", "InverseDwt")
         self._upsample_texels = device.kernel("inverse_dwt.compute", "UpsampleTexels")
+        self._sum_targets = device.kernel("expressions.compute", "SumTargets")
+        self._bend_triangles = device.kernel("expressions.compute", "BendTriangles")
+        self._bend_texels = device.kernel("expressions.compute", "BendTexels")
 
     def _create_buffers(self, device: Device) -> None:
         avatar, branches = self.avatar.avatar, (self.avatar.geometry, self.avatar.appearance)
@@ -58,6 +67,8 @@ class ChannelDecoder:
         textures = [  # finest with details, its ll
             max(b.channels * plane_bytes(low << len(b.details) >> i) for b in branches) for i in range(2)
         ]
+        self.moved = device.buffer(np.zeros(3 * len(avatar.rig.mesh.vertices), np.float32), name="moved")  # [V, 3]
+        self.bends = device.buffer(BEND * self.avatar.expressions.triangle_count, name="bends")
         self.textures = tuple(device.buffer(textures[i], name=f"texture {i}") for i in range(2))
 
     def part(self, commands: Commands, channels: ChannelSet, part: int) -> None:
@@ -72,6 +83,8 @@ class ChannelDecoder:
             self._texels(commands, branch, shown, channels, first_row)
         if part == 1:
             self._coarse(commands, channels)
+        if part == PARTS - 1 and channels.expressive:
+            self._express(commands, channels)
 
     def _mlp(self, commands: Commands, mlp: tuple[LayerBuffers, ...], components: Buffer) -> Buffer:
         """The MLP's output for the components; valid until the next MLP runs."""
@@ -101,6 +114,43 @@ class ChannelDecoder:
         basis, kernel = self.avatar.mesh, self._mlp_matmul_transposed
         coefficients = self._mlp(commands, self.avatar.coarse_mlp, channels.components)
         self._layer(commands, kernel, basis, coefficients, channels.mesh, MESH_COLUMNS, relu=False)
+
+    def _express(self, commands: Commands, channels: ChannelSet) -> None:
+        """Move the vertices of expressions, and bend the texels in reach."""
+        targets, level = self.avatar.expressions, channels.level
+        commands.dispatch(
+            self._sum_targets,
+            (groups(targets.vertex_count, EXPRESSED), 1, 1),
+            {
+                "vertices": targets.vertices,
+                "starts": targets.starts,
+                "expressions": targets.expressions,
+                "offsets": targets.offsets,
+                "weights": channels.weights,
+                "moved": self.moved,
+                "mesh": channels.mesh,
+            },
+            vertex_count=targets.vertex_count,
+        )
+        commands.dispatch(
+            self._bend_triangles,
+            (groups(targets.triangle_count, EXPRESSED), 1, 1),
+            {
+                "triangles": targets.triangles,
+                "faces": level.places.faces,
+                "moved": self.moved,
+                "mesh": channels.mesh,
+                "bends": self.bends,
+            },
+            triangle_count=targets.triangle_count,
+        )
+        commands.dispatch(
+            self._bend_texels,
+            (groups(level.reached_count, EXPRESSED), 1, 1),
+            {"reached": level.reached, "bends": self.bends, "texel_channels": channels.texel_channels},
+            texel_count=level.reached_count,
+            splat_count=level.splat_count,
+        )
 
     def _blend(self, commands: Commands, branch: BranchBuffers, channels: ChannelSet) -> None:
         """Coefficients, LL, and level by level up to the finest details."""

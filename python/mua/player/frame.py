@@ -78,6 +78,7 @@ class AvatarFrame:
             components=buffer(FLOAT * len(self.avatar.avatar.components.margins), name="components"),
             mesh=buffer(FLOAT * 3 * self.vertex_count, name="mesh"),
             texel_channels=buffer(TEXEL_CHANNELS * self.avatar.level(0).splat_count, name="texel_channels"),
+            weights=buffer(FLOAT * len(self.avatar.avatar.expressions), name="weights"),
         )
 
     def decode(
@@ -87,28 +88,37 @@ class AvatarFrame:
         translations: Array,  # [k, J, 3] local joint translations, metres
         place: Array = IN_PLACE,  # [8] rigid dual quaternion from the avatar's space to the world, metres
         level: int = 0,  # level of detail, 0 being the finest
+        expressions: Array | None = None,  # [E] weights, 0 to 1; None: all 0
     ) -> None:
         """Append the dispatches from a window of poses to channels and posed vertices, which are shown from then on.
 
         What depends on the pose alone is written to the device at once: submit before the next decode.
         """
-        self.decode_channels(commands, rotations, translations, level)
+        self.decode_channels(commands, rotations, translations, expressions, level=level)
         self.repose(commands, rotations[0], translations[0], place)
 
-    def decode_channels(self, commands: Commands, rotations: Array, translations: Array, level: int = 0) -> None:
+    def decode_channels(
+        self,
+        commands: Commands,
+        rotations: Array,
+        translations: Array,
+        expressions: Array | None = None,
+        *,
+        level: int = 0,
+    ) -> None:
         """Append all parts of a decode, without posing; one that was begun is given up."""
         self._decoded = PARTS
-        self._begin(self._shown, rotations, translations, level)
+        self._begin(self._shown, rotations, translations, expressions, level)
         for part in range(PARTS):
             self._decoder.part(commands, self._shown, part)
 
-    def begin(self, rotations: Array, translations: Array, level: int = 0) -> None:
+    def begin(self, rotations: Array, translations: Array, expressions: Array | None = None, *, level: int = 0) -> None:
         """Take the window of a decode that is made part by part beside what is shown, in place of one begun before.
 
         Errors: InputError where the device cannot hold a second set of channels.
         """
         self._hidden = self._hidden or self._create_channels()
-        self._begin(self._hidden, rotations, translations, level)
+        self._begin(self._hidden, rotations, translations, expressions, level)
         self._decoded = 0
 
     def advance(self, commands: Commands) -> None:
@@ -133,13 +143,18 @@ class AvatarFrame:
         self._write_pose(rotations, translations, place)
         self._pose(commands)
 
-    def _begin(self, channels: ChannelSet, rotations: Array, translations: Array, level: int) -> None:
+    def _begin(
+        self, channels: ChannelSet, rotations: Array, translations: Array, expressions: Array | None, level: int
+    ) -> None:
         channels.level = self.avatar.level(level)
         avatar = self.avatar.avatar
         descriptor = describe_window(avatar.rig.skeleton, avatar.encoding, rotations, translations)
         read, outside = read_components(avatar.components, descriptor)
         channels.outside = float(outside)
         channels.components.write(read.astype(np.float32))
+        channels.expressive = expressions is not None and bool(expressions.any())
+        if expressions is not None:
+            channels.weights.write(expressions.astype(np.float32))
 
     def _write_pose(self, rotations: Array, translations: Array, place: Array) -> None:
         avatar, skeleton = self.avatar.avatar, self.avatar.avatar.rig.skeleton

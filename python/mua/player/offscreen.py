@@ -45,7 +45,8 @@ class Offscreen:
         level = 0 if self._levels is None else self._levels.choose(rotations[0], translations[0], cameras)
         commands = self._device.commands()
         if (index, level) != self._decoded:
-            self._avatar.decode(commands, rotations, translations, level=level)
+            weights = self._clip.pose(index).expressions
+            self._avatar.decode(commands, rotations, translations, level=level, expressions=weights)
             self._scene.pose(rotations[0], translations[0], ground=self._ground)
         self._frame.sort(commands, cameras)
         commands.submit()

@@ -11,8 +11,9 @@ from mua.avatar.decode_turns import Ask, Turns, take_turns
 from mua.gpu import Commands
 from mua.player.frame import AvatarFrame
 
-Moment = tuple[str, int]  # clip and frame
-Window = Callable[[Moment], tuple[Array, Array]]  # rotations [k, J, 4] and translations [k, J, 3], newest first
+Moment = tuple[str, int, tuple[float, ...]]  # clip, frame, and the weights of the expressions that are set
+# Rotations [k, J, 4] and translations [k, J, 3], newest first, and weights of expressions [E]; None: all 0.
+Window = Callable[[Moment], tuple[Array, Array, Array | None]]
 
 
 class DecodeSchedule:
@@ -30,12 +31,12 @@ class DecodeSchedule:
         self._turns, steps = take_turns(self._turns, {0: Ask(due, following, level)}, self._displayed)
         step = steps[0]
         if step.whole is not None:
-            self._frame.decode_channels(commands, *window(due), step.whole.level)
+            self._frame.decode_channels(commands, *window(due), level=step.whole.level)
         if step.show:
             self._advance(commands, step.finish)
             self._frame.show()
         if step.begin is not None:
-            self._frame.begin(*window(following), step.begin.level)
+            self._frame.begin(*window(following), level=step.begin.level)
         self._advance(commands, step.parts)
         return step.show or step.whole is not None
 

@@ -14,7 +14,7 @@ namespace Mua.SelfTest
         /// <summary>Stems of the kernels' files, each of which has golden cases.</summary>
         public static readonly string[] Stems =
         {
-            "mlp_matmul", "blend_subbands", "inverse_dwt", "dq_skinning", "splat_project", "splat_sort",
+            "mlp_matmul", "blend_subbands", "inverse_dwt", "dq_skinning", "expressions", "splat_project", "splat_sort",
         };
 
         public string kernel = "";

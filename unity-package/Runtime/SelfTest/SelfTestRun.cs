@@ -77,6 +77,8 @@ namespace Mua.SelfTest
                     return resources.InverseDwt;
                 case "dq_skinning":
                     return resources.DqSkinning;
+                case "expressions":
+                    return resources.Expressions;
                 case "splat_project":
                     return resources.SplatProject;
                 case "splat_sort":
