@@ -1,5 +1,7 @@
 """Golden cases of the kernels from pose to channels, with inputs and bounds of the kernels' own tests."""
 
+from functools import partial
+
 import numpy as np
 from bent_cases import BENT_BOUND, TURNED_BOUND, random_targets, random_texture, triangles
 from dwt_cases import taps, upsampling_bound
@@ -223,7 +225,6 @@ def _targets() -> Case:
     entries = weights[targets.expressions, None].astype(float) * targets.offsets
     np.add.at(moved, np.repeat(np.arange(count), np.diff(targets.starts)), entries)
     bound = 2 * expressions * ULP * float(np.abs(entries).max()) * expressions
-    others = {"first": 3, "length": 3, "period": 6}
     untouched = np.full((2 * count, 3), UNTOUCHED)
     return Case(
         "five expressions",
@@ -237,9 +238,9 @@ def _targets() -> Case:
         },
         (
             Expected("moved", "float", moved, bound, length=3, period=6),
-            Expected("moved", "float", untouched[1::2], **others),
+            Expected("moved", "float", untouched[1::2], first=3, length=3, period=6),
             Expected("mesh", "float", mesh[::2] + moved, bound + 2 * ULP, length=3, period=6),
-            Expected("mesh", "float", mesh[1::2], **others),
+            Expected("mesh", "float", mesh[1::2], first=3, length=3, period=6),
         ),
     )
 
@@ -274,17 +275,16 @@ def _texels() -> Case:
     """The first texels bend, those after them are on a triangle that does not, the last are out of reach."""
     rng, count, still, beyond = np.random.default_rng(8), 70, 3, 4
     bent = triangles(rng, count)
-    turns, maps = bend_triangles(*(a.astype(float) for a in (bent.mesh, bent.moved)), bent.faces)
+    turns, maps = bend_triangles(bent.mesh.astype(float), bent.moved.astype(float), bent.faces)
     turns, maps = turns.astype(np.float32), maps.astype(np.float32)
     texels = count + still + beyond
     places = np.concatenate([rng.permutation(count), np.full(still + beyond, count)])
     texture = random_texture(rng, texels)
     halves_of = np.ascontiguousarray(texture.astype(np.float16).reshape(-1, 6, 4).swapaxes(0, 1))
     words = halves_of.view(np.uint32).reshape(6, texels, 2)
-    exact = bend_texels(*(a.astype(float) for a in (turns, maps)), places, texture.astype(float))[:count]
+    exact = bend_texels(turns.astype(float), maps.astype(float), places, texture.astype(float))[:count]
     bends = np.concatenate([turns[:, None], np.pad(maps.swapaxes(1, 2), ((0, 0), (0, 0), (0, 1)))], axis=1)
-    written = {"buffer": "texel_channels", "bound": TURNED_BOUND}
-    kept = {"buffer": "texel_channels", "kind": "uint"}
+    written, kept = partial(halves, "texel_channels", bound=TURNED_BOUND), partial(Expected, "texel_channels", "uint")
     return Case(
         "triangles with edges of 0.2 to 2 metres",
         "BendTexels",
@@ -295,13 +295,13 @@ def _texels() -> Case:
             **{"bends": bends, "texel_channels": words},
         },
         (
-            halves(values=exact[:, 0:4], **written),
-            Expected(values=words[0, count:], first=2 * count, **kept),
-            halves(values=exact[:, 4:8], first=2 * texels, **written),
-            Expected(values=words[1, count:], first=2 * (texels + count), **kept),
-            halves(values=exact[:, 8:10], first=4 * texels, period=2, **written),
-            Expected(values=words[2, :count, 1], first=4 * texels + 1, period=2, **kept),
-            Expected(values=words[2, count:], first=2 * (2 * texels + count), **kept),
-            Expected(values=words[3:], first=6 * texels, **kept),
+            written(exact[:, 0:4]),
+            kept(words[0, count:], first=2 * count),
+            written(exact[:, 4:8], first=2 * texels),
+            kept(words[1, count:], first=2 * (texels + count)),
+            written(exact[:, 8:10], first=4 * texels, period=2),
+            kept(words[2, :count, 1], first=4 * texels + 1, period=2),
+            kept(words[2, count:], first=2 * (2 * texels + count)),
+            kept(words[3:], first=6 * texels),
         ),
     )

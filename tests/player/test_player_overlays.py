@@ -1,6 +1,6 @@
 """Overlays are drawn at the numpy reference's places of surface, joints and shadow."""
 
-from dataclasses import astuple, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -291,7 +291,7 @@ def still(avatar: Avatar, heights: Array) -> Clip:
 def test_stands_the_ground_under_most_frames() -> None:
     avatar = synthetic_avatar()
     rig = avatar.rig
-    joints = rig.skeleton.skinning(*astuple(rig.skeleton.bind_pose))
+    joints = rig.skeleton.skinning(rig.skeleton.bind_pose.rotations, rig.skeleton.bind_pose.translations)
     rest = rotation.dual_transform(blend_vertices(joints, rig.skin_indices, rig.skin_weights), rig.mesh.vertices)
     lowest = rest[:, 1].min()
     assert ground_height(rig, None) == pytest.approx(rig.mesh.vertices[:, 1].min())

@@ -5,8 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 import wgpu
+from synthetic_avatar import synthetic_avatar, with_expressions
 
 from mua.arrays import Array
+from mua.asset import write
 from mua.avatar.decode_turns import ALONE, PARTS
 from mua.cli.view_options import Asked, look_of
 from mua.gpu import Commands, Device
@@ -31,15 +33,15 @@ class Display:
         self.schedule = DecodeSchedule(self.frame)
         self.asked: list[int] = []  # frames whose windows were decoded
 
-    def window(self, moment: Moment) -> tuple[Array, Array]:
+    def window(self, moment: Moment) -> tuple[Array, Array, Array | None]:
         self.asked.append(moment[1])
         clip, frames = self.frame.avatar.avatar.clips[0], self.frame.avatar.avatar.encoding.frames(moment[1])
-        return clip.rotations[frames], clip.translations[frames]
+        return clip.rotations[frames], clip.translations[frames], None
 
     def show(self, due: int, following: int | None = None, *, level: int = 0, shown_at: int | None = None) -> int:
         """Display a frame, holding it to what is due; how many parts of decodes it made."""
         commands, ahead = self.device.commands(), due if following is None else following
-        self.schedule.record(commands, ("", due), ("", ahead), self.window, level=level)
+        self.schedule.record(commands, ("", due, ()), ("", ahead, ()), self.window, level=level)
         commands.submit()
         self.require(due, level if shown_at is None else shown_at)
         return sum(each.kernel in ENDS for each in commands.bound)
@@ -48,7 +50,7 @@ class Display:
         """Mesh and channels are, bit for bit, those of a frame that is decoded at once."""
         alone, commands = AvatarFrame(self.device, self.frame.avatar), self.device.commands()
         clip, frames = self.frame.avatar.avatar.clips[0], self.frame.avatar.avatar.encoding.frames(index)
-        alone.decode_channels(commands, clip.rotations[frames], clip.translations[frames], level)
+        alone.decode_channels(commands, clip.rotations[frames], clip.translations[frames], level=level)
         commands.submit()
         words = TEXEL_CHANNELS // 4 * alone.splat_count
         assert self.frame.level.number == level
@@ -120,9 +122,9 @@ def test_another_level_of_detail_comes_with_the_next_frame_and_at_rest_at_once(d
 
 def test_a_decode_at_once_gives_up_the_one_that_was_begun(display: Display) -> None:
     frame, commands = display.frame, display.device.commands()
-    frame.begin(*display.window(("", 5)))
+    frame.begin(*display.window(("", 5, ())))
     frame.advance(commands)
-    frame.decode_channels(commands, *display.window(("", 2)))
+    frame.decode_channels(commands, *display.window(("", 2, ())))
     commands.submit()
     assert frame.parts_left == 0
     display.require(2, 0)
@@ -182,3 +184,26 @@ def test_a_window_that_rests_or_skips_or_times_frames_decodes_none_ahead(watched
     session.advance(0.25 / session.clip.rate)
     session.step(1)
     assert watched.draw() == (3, 3)
+
+
+def test_a_face_that_alone_changed_is_decoded(device: Device, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Paused: a weight that is set shows in the next image; the same again decodes nothing."""
+    write(tmp_path / "face.muaavatar", with_expressions(synthetic_avatar()))
+    watched = Watched(device, tmp_path / "face.muaavatar", monkeypatch)
+    session = watched.session
+    session.step(3)
+    own, weights = session.expressions, session.clip.pose(3).expressions
+    assert weights is not None
+    assert own == pytest.approx(dict(zip(own, weights, strict=True)))
+    watched.draw()
+    shown = session._stage.frame.avatars[0].mesh.read().copy()
+    for weight, changes in ((0.25, True), (0.25, False), (1.0, True)):
+        session.weights["jawOpen"] = weight
+        watched.draw()
+        now = session._stage.frame.avatars[0].mesh.read().copy()
+        assert session.expressions == own | {"jawOpen": weight}
+        assert (now != shown).any() == changes
+        shown = now
+    session.weights.clear()
+    watched.draw()
+    assert session.expressions == own

@@ -57,7 +57,7 @@ def reach_of(
     triangles: Array,  # [N] into faces
 ) -> Reach:
     """The triangles that the vertices move, and the texels on these."""
-    held = np.isin(faces, vertices).any(axis=1)
+    held = np.any(np.isin(faces, vertices), axis=1)
     texels = np.flatnonzero(held[triangles])
     places = (np.cumsum(held) - 1)[triangles[texels]]
     return Reach(np.flatnonzero(held).astype(np.int32), np.stack([texels, places], axis=1).astype(np.int32))
@@ -94,7 +94,7 @@ def bend_texels(
 ) -> Array:
     """Raw channels [N, 23] on the bent triangles; those on others stay bit for bit."""
     bent = texture.copy(order="K")  # as it lies in memory: what follows rounds alike
-    at = np.flatnonzero(turns.any(axis=1)[triangles])
+    at = np.flatnonzero((turns[triangles] != 0).any(axis=1))
     turn, channels = turns[triangles[at]], texture[at]
     axes = maps[triangles[at]] @ rotation.to_matrix(_unit(channels[:, 3:7]))
     stretch = _length(*np.moveaxis(axes, 1, 0))

@@ -3,6 +3,9 @@
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+import numpy as np
+
+from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.errors import InputError
 from mua.motion.load import counted, load_motions, unique_names
@@ -49,3 +52,17 @@ def named_clip(
     if name is not None and name not in names:
         raise InputError(f"--clip is {name!r}; {source} holds {', '.join(names)}")
     return clips[0 if name is None else names.index(name)]
+
+
+def with_weights(
+    names: Sequence[str],  # [E] of the avatar's expressions
+    weights: Array | None,  # [E] of a clip's frame; None: all 0
+    named: Mapping[str, float],
+) -> Array | None:
+    """The weights of a frame, but those that are named; names of another avatar's expressions do nothing."""
+    known = {names.index(name): weight for name, weight in named.items() if name in names}
+    if not known:
+        return weights
+    held = np.zeros(len(names)) if weights is None else np.array(weights, dtype=float)
+    held[list(known)] = list(known.values())
+    return held

@@ -1,7 +1,6 @@
 """The overlays beside the splats: detailed geometry, template, skeleton, cast shadow (paper, section System)."""
 
 from collections.abc import Mapping
-from dataclasses import astuple
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -55,7 +54,8 @@ class Overlays:
         usage = wgpu.TextureUsage.RENDER_ATTACHMENT | wgpu.TextureUsage.COPY_SRC
         size = (MASK_SIZE, MASK_SIZE, 1)
         self._mask_texture = device.wgpu.create_texture(size=size, format="r8unorm", usage=usage)
-        self.pose(*astuple(avatar.rig.skeleton.bind_pose), ground=0.0)
+        rest = avatar.rig.skeleton.bind_pose
+        self.pose(rest.rotations, rest.translations, ground=0.0)
         opaque: dict[str, Any] = {"depth_write": True, "depth_compare": "less-equal", "blend": False}
         self._draw_surface = _pipeline(device, "surface", "Surface", color, depth, **opaque)
         self._draw_template = _pipeline(device, "template", "Template", color, depth, **opaque)

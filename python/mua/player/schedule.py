@@ -11,7 +11,7 @@ from mua.avatar.decode_turns import Ask, Turns, take_turns
 from mua.gpu import Commands
 from mua.player.frame import AvatarFrame
 
-Moment = tuple[str, int, tuple[float, ...]]  # clip, frame, and the weights of the expressions that are set
+Moment = tuple[str, int, tuple[tuple[str, float], ...]]  # clip, frame, expressions that are set and their weights
 # Rotations [k, J, 4] and translations [k, J, 3], newest first, and weights of expressions [E]; None: all 0.
 Window = Callable[[Moment], tuple[Array, Array, Array | None]]
 

@@ -16,7 +16,7 @@ from mua.player.buffers import AvatarBuffers
 from mua.player.focus import find_focus
 from mua.player.frame import AvatarFrame
 from mua.player.levels import AUTO, Levels, Wanted
-from mua.player.motion import named_clip, player_clips, require_frame
+from mua.player.motion import named_clip, player_clips, require_frame, with_weights
 from mua.player.overlays import ground_height
 from mua.player.scene import CLEAR, Scene
 from mua.player.schedule import DecodeSchedule, Moment
@@ -42,6 +42,7 @@ class Stage:
         background = CLEAR if look.background is None else (*look.background, 1.0)
         self.scene = Scene(device, self.frame, color_format=color_format, background=background)
         self.rig, self.encoding, self.bounds = avatar.avatar.rig, avatar.avatar.encoding, avatar.avatar.bounds
+        self.expressions = avatar.avatar.expressions
         self.levels = Levels(avatar.avatar, look.level)
         self.notes += (self.levels.note,) if self.levels.note else ()
         self.focus = None if look.shot.look_at is None else find_focus(self.rig, look.shot.look_at)
@@ -72,6 +73,7 @@ class Session:
         self.stereo, self.follow = look.shot.eyes is not None, look.shot.follow
         self.turning = look.shot.turning
         self.playing, self.speed, self.time = True, 1.0, 0.0  # time in frames of the clip
+        self.weights: dict[str, float] = {}  # of expressions, in place of the clip's; those of other avatars are kept
         self.failure = ""  # why the avatar last chosen is not shown
         self.milliseconds: dict[str, float] = {}  # by kernel, smoothed
         self.timed = False  # whether to measure them
@@ -97,6 +99,13 @@ class Session:
     def clip(self) -> Clip:
         """The clip that plays."""
         return self._clip
+
+    @property
+    def expressions(self) -> dict[str, float]:
+        """The avatar's expressions with the weights that are shown."""
+        names, own = self._stage.expressions, self._clip.pose(self.index).expressions
+        shown = with_weights(names, own, self.weights)
+        return dict.fromkeys(names, 0.0) if shown is None else dict(zip(names, shown.tolist(), strict=True))
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -190,7 +199,8 @@ class Session:
         stage, clip, index = self._stage, self._clip, self.index
         rotations, translations = clip.rotations[index], clip.translations[index]
         level = 0 if self.toggles.geometry else stage.levels.choose(rotations, translations, cameras)
-        due, following = (clip.name, index), (clip.name, self._following())
+        named = tuple(self.weights.items())
+        due, following = (clip.name, index, named), (clip.name, self._following(), named)
         if stage.schedule.record(commands, due, following, self._window, level=level):
             stage.frame.avatars[0].repose(commands, rotations, translations)
             stage.scene.pose(rotations, translations, ground=stage.ground(clip))
@@ -202,9 +212,11 @@ class Session:
             return self.index
         return (self.index + 1) % len(self._clip)
 
-    def _window(self, moment: Moment) -> tuple[Array, Array]:
-        window = self._stage.encoding.frames(moment[1])
-        return self._clip.rotations[window], self._clip.translations[window]
+    def _window(self, moment: Moment) -> tuple[Array, Array, Array | None]:
+        _, index, named = moment
+        window, pose = self._stage.encoding.frames(index), self._clip.pose(index)
+        weights = with_weights(self._stage.expressions, pose.expressions, dict(named))
+        return self._clip.rotations[window], self._clip.translations[window], weights
 
     def _load(self, file: Path) -> Stage:
         if file not in self._stages:
