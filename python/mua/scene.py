@@ -106,6 +106,7 @@ class Motion:
     rate: float  # frames per second
     worlds: Array  # [F, nodes, 4, 4] metres, Y up
     start: float = 0.0  # seconds of the first frame, as the file counts them
+    weights: Mapping[str, Array] = field(default_factory=dict)  # expression to its weights [F], 0 to 1
 
 
 @dataclass(frozen=True, eq=False)

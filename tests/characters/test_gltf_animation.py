@@ -7,7 +7,8 @@ import pytest
 from gltf_files import FLOAT_BOUND, HALF_TURN, animate, body, read
 from scipy.spatial.transform import Rotation
 
-from mua.characters.gltf.animation import compose, sample
+from mua.characters.gltf.keys import KeyTrack
+from mua.characters.node_tree import compose
 from mua.motion.read import read_motion
 from mua.pose.joint_names import limb_count
 
@@ -130,9 +131,9 @@ def test_motion_of_a_file_that_shows_a_face_alone_has_all_limbs(tmp_path: Path) 
 def test_step_holds_and_cubic_passes_its_keys() -> None:
     times, keys = np.array([0.0, 1.0, 3.0]), np.array([[0.0], [1.0], [5.0]])
     at = np.array([-1, 0, 0.99, 1, 2.5, 3, 9])
-    np.testing.assert_array_equal(sample(times, keys, at, kind="STEP", spherical=False)[:, 0], [0, 0, 0, 1, 1, 5, 5])
+    np.testing.assert_array_equal(KeyTrack(times, keys, "STEP").at(at)[:, 0], [0, 0, 0, 1, 1, 5, 5])
     slopes = np.gradient(times**2, times, edge_order=2)  # a parabola, which cubic segments hold exactly
     cubic = np.stack([slopes, times**2, slopes], axis=1).reshape(-1, 1)
     inside = np.linspace(0, 3, 13)
-    values = sample(times, cubic, inside, kind="CUBICSPLINE", spherical=False)[:, 0]
+    values = KeyTrack(times, cubic, "CUBICSPLINE").at(inside)[:, 0]
     np.testing.assert_allclose(values, inside**2, atol=1e-12)

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from gltf_files import FLOAT_BOUND, HEIGHTS, POINTS, TRIANGLES, Glb, body, primitive, read
+from gltf_files import FLOAT_BOUND, HEIGHTS, POINTS, TRIANGLES, Glb, animate, body, primitive, read
 
 from mua.arrays import Array
 from mua.atlas.surfaces import Surfaces
@@ -13,6 +13,7 @@ from mua.characters.facing import Facing
 from mua.characters.figure_size import FigureSize
 from mua.characters.read import read_character, read_surfaces
 from mua.errors import InputError
+from mua.motion.read import read_motion
 
 UP, AHEAD = np.array([0, 0.1, 0]), np.array([0, 0, 0.2])
 TOP = np.arange(12, 16)  # the points around the column's upper end
@@ -237,3 +238,71 @@ def test_character_keeps_its_expressions(tmp_path: Path) -> None:
     moved = character.expressions.displacement(np.ones(1), vertices=len(character.mesh.vertices))
     top = character.mesh.vertices[:, 1] > 1.4
     np.testing.assert_allclose(moved, np.where(top[:, None], UP, 0), atol=FLOAT_BOUND)
+
+
+def with_weights(glb: Glb, values: list[list[float]], **sampler: Any) -> Glb:
+    """A clip of weights of the mesh's targets, a key each half second."""
+    times = glb.accessor(0.5 * np.arange(len(values)))
+    sampler |= {"input": times, "output": glb.accessor(np.array(values).reshape(-1, 1))}
+    channel = {"sampler": 0, "target": {"node": 3, "path": "weights"}}
+    glb.json["animations"] = [{"name": "talk", "samplers": [sampler], "channels": [channel]}]
+    return glb
+
+
+def test_clips_carry_the_weights_of_targets(tmp_path: Path) -> None:
+    glb = with_weights(with_targets(["a", "b"], [UP, AHEAD]), [[0, 0], [1, 0.5], [0, 2]])
+    surfaces = read(glb, tmp_path)
+    (clip,) = surfaces.clips
+    assert clip.expressions is not None
+    expected = np.array([[0, 0], [1, 0.5], [0, 1.0]])
+    np.testing.assert_allclose(clip.expressions[[0, 15, 30]], expected, atol=FLOAT_BOUND)
+    assert not np.ptp(clip.rotations, axis=0).any()
+    assert not surfaces.notes
+    (source,) = read_motion(tmp_path / "body.glb")
+    assert source.expressions == ("a", "b")
+    assert np.array_equal(np.asarray(source.clip.expressions), clip.expressions)
+
+
+def test_weights_of_clips_count_from_those_at_rest(tmp_path: Path) -> None:
+    glb = with_weights(with_targets(["a", "b"], [UP, AHEAD], weights=[0.5, 0.25]), [[0.5, 0.25], [1, 0.25]])
+    surfaces = read(glb, tmp_path)
+    (clip,) = surfaces.clips
+    assert clip.expressions is not None
+    np.testing.assert_allclose(clip.expressions[-1], [1, 0], atol=FLOAT_BOUND)
+    assert_top_moves(surfaces, "a", UP / 2)
+
+
+def test_clips_of_raw_targets_move_the_expressions_of_a_vrm(tmp_path: Path) -> None:
+    glb = second(with_targets(["Fcl_MTH_A"], [UP]), {"aa": bind(0, 1)})
+    (clip,) = read(with_weights(glb, [[0], [1]]), tmp_path).clips
+    assert clip.expressions is not None
+    np.testing.assert_allclose(clip.expressions[-1], [1], atol=FLOAT_BOUND)
+
+
+def test_a_clip_whose_weights_stay_at_rest_moves_nothing(tmp_path: Path) -> None:
+    surfaces = read(with_weights(with_targets(["a"], [UP]), [[0], [0]]), tmp_path)
+    assert not surfaces.clips
+    assert surfaces.notes == ("Clips that move no joint are left out: talk.",)
+
+
+def test_broken_weights_are_named(tmp_path: Path) -> None:
+    glb = with_weights(with_targets(["a", "b"], [UP, AHEAD]), [[0], [1]])
+    with pytest.raises(InputError, match=r"samplers\[0\]\.output holds 2 elements, expected 4 for its LINEAR keys"):
+        read(glb, tmp_path)
+
+
+def test_vrm_animations_carry_weights_as_a_nodes_x(tmp_path: Path) -> None:
+    glb = body()
+    glb.json["nodes"].append({"name": "happy"})
+    glb.json["scenes"][0]["nodes"].append(4)
+    extension = {"humanoid": {"humanBones": {"hips": {"node": 0}}}, "expressions": {"preset": {"happy": {"node": 4}}}}
+    glb.json["extensions"] = {"VRMC_vrm_animation": extension}
+    animate(glb, 1, "rotation", times=[0.0, 1.0], values=[[0, 0, 0, 1], [0, 0, 1, 0]])
+    animate(glb, 4, "translation", times=[0.0, 1.0], values=[[0, 0, 0], [1, 5, 5]])
+    (source,) = read_motion(glb.save(tmp_path / "smile.vrma"))
+    assert source.expressions == ("happy",)
+    assert source.clip.expressions is not None
+    np.testing.assert_allclose(source.clip.expressions[:, 0], np.linspace(0, 1, 31), atol=FLOAT_BOUND)
+    extension["expressions"] = {"custom": {"grin": {"node": 9}}}
+    with pytest.raises(InputError, match=r"expressions\.custom\.grin\.node is 9, but nodes holds 5"):
+        read_motion(glb.save(tmp_path / "smile.vrma"))

@@ -66,12 +66,9 @@ def test_what_a_command_writes(
     assert (ended.status, replaced(path)) == (0, True), ended.err
 
 
-def test_what_a_check_of_a_character_writes(
-    opened: Callable[[str], Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(check, "fidelity_sheet", lambda _: Image.new("RGB", (2, 2)))
+def test_what_a_check_of_a_character_writes(opened: Callable[[str], Path], tmp_path: Path) -> None:
     found = check.Check(None, (), (), (), (), (), ())
-    check.write_sheet(opened("a_check.png"), None)  # type: ignore[arg-type]
+    check.write_sheet(opened("a_check.png"), Image.new("RGB", (2, 2)))
     settings = BakeSettings(tmp_path / "a.muaavatar", tmp_path, preset("tiny"))
     check.write_json(opened("a.json"), check.as_dict(settings, found))
     assert replaced(tmp_path / "a_check.png")

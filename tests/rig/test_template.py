@@ -1,5 +1,6 @@
 """Templates of spheres, whose volume, seam and parts are known, and of a real character."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from mua.arrays import Array
 from mua.characters.read import read_character
 from mua.rig.build import build_rig
 from mua.rig.character import Character, Mesh
+from mua.rig.expressions import Expressions
 from mua.rig.template import CLOSE_ENOUGH, make_template
 from mua.rig.texel_map import build_texel_map
 
@@ -156,3 +158,18 @@ def test_real_character_loses_little(shared_data: Any) -> None:
     there = np.einsum("nk,nkd->nd", barycentrics, character.mesh.vertices[character.mesh.faces[triangles]])
     here = np.einsum("nk,nkd->nd", rig.texels.barycentrics, rig.mesh.vertices[rig.mesh.faces[rig.texels.triangles]])
     assert np.linalg.norm(there - here, axis=1).mean() < 0.002
+
+
+def test_vertices_are_kept_where_expressions_move_them() -> None:
+    """A patch of a tenth of the sphere, on which every second vertex moves."""
+    plain = one_sphere()
+    patch = np.flatnonzero(plain.mesh.vertices[:, 2] > 0.8)
+    moved = patch[::2].astype(np.int32)
+    starts, offsets = np.array([0, len(moved)], np.int32), np.tile(np.array([0, 0, 0.1], np.float32), (len(moved), 1))
+    character = replace(plain, expressions=Expressions(("grin",), starts, moved, offsets))
+    kept = [np.isin(make_template(one, vertices=800).source_vertices, patch).sum() for one in (plain, character)]
+    assert kept[0] < 0.5 * len(patch)
+    assert kept[1] > 0.9 * len(patch)
+    rig, source = build_rig(character, texels=64, template_vertices=800)
+    assert rig.expressions is not None
+    assert np.isin(source[rig.expressions.vertices], moved).all()

@@ -9,6 +9,7 @@ from people import upright
 from mua.arrays import Array
 from mua.channels import SH_C0
 from mua.rig.character import Character, Mesh
+from mua.rig.expressions import Expressions
 from mua.teachers.simulated.still import StillTeacher
 
 TEXELS = 64
@@ -72,3 +73,11 @@ def test_what_a_joint_can_open_keeps_its_colour_where_it_is_then_seen() -> None:
     assert inner[2] > inner[0] + 20  # bluer than red
     _, shut = colours(replace(character, skin_indices=np.full_like(character.skin_indices, WALL)))
     assert shut[0] > shut[2] + 100
+
+
+def test_what_an_expression_uncovers_keeps_its_colour() -> None:
+    character = box_in_a_box()
+    lid = np.unique(character.mesh.faces[[5, 11]]).astype(np.int32)
+    starts, offsets = np.array([0, len(lid)], np.int32), np.tile(np.array([0, 0, 0.6], np.float32), (len(lid), 1))
+    _, inner = colours(replace(character, expressions=Expressions(("open",), starts, lid, offsets)))
+    assert inner[2] > inner[0] + 20  # bluer than red

@@ -14,6 +14,7 @@ from mua.avatar.decode import pose_splats
 from mua.avatar.rendering import render_premultiplied
 from mua.channels import SH_C0
 from mua.rig.character import Character, Mesh
+from mua.rig.expressions import Expressions
 from mua.rig.texel_map import build_texel_map
 from mua.teachers.simulated import texels
 from mua.teachers.simulated.still import StillTeacher
@@ -159,3 +160,45 @@ def test_the_picture_beside_a_chart_gives_its_texels_no_colour() -> None:
     teacher = StillTeacher(replace(character, base_color=picture), texels=TEXELS)
     colors = 0.5 + SH_C0 * teacher.frame(character.skeleton.bind_pose).texture[:, 11:14]
     np.testing.assert_allclose(colors, 128 / 255, atol=2 / 255)
+
+
+def test_expressions_move_texels_with_the_surface_in_any_pose() -> None:
+    character = tube(rings=29, sides=40)
+    bulge = np.flatnonzero(np.abs(character.mesh.vertices[:, 1] - HEIGHT / 2) < HEIGHT / 5).astype(np.int32)
+    offsets = 0.1 * character.mesh.vertices[bulge].astype(np.float32) * np.array([1, 0, 1], np.float32)
+    expressions = Expressions(("bulge",), np.array([0, len(bulge)], np.int32), bulge, offsets)
+    character = replace(character, expressions=expressions)
+    teacher, rest = StillTeacher(character, texels=TEXELS), character.skeleton.bind_pose
+    bent = rest.rotations.copy()
+    bent[-1] = [np.cos(0.4), np.sin(0.4), 0, 0]
+    for pose in (rest, replace(rest, rotations=bent)):
+        before, after, none = (
+            teacher.frame(replace(pose, expressions=weights)) for weights in (None, np.ones(1), np.zeros(1))
+        )
+        assert np.array_equal(none.texture, before.texture)
+        swollen = StillTeacher(
+            replace(character, mesh=replace(character.mesh, vertices=expressed(character))), texels=TEXELS
+        )
+        places = [
+            pose_splats(one.rig, frame.mesh, texture=frame.texture, pose=pose).centres
+            for one, frame in ((teacher, after), (swollen, swollen.frame(pose)))
+        ]
+        # Beside the rims, whose texels reach beyond the surface: relief of a few millimetres is not scaled along.
+        assert np.quantile(np.abs(places[0] - places[1]), 0.9) < 2e-3
+        moved = np.isin(teacher.rig.mesh.faces, rigged(teacher))
+        far = np.asarray(~moved.any(axis=1))[teacher.rig.texels.triangles]
+        assert far.any()
+        assert np.abs(after.texture[far, :3] - before.texture[far, :3]).max() < 1e-4
+
+
+def expressed(character: Character) -> Array:
+    """The vertices of a character in its first expression."""
+    assert character.expressions is not None
+    vertices = character.mesh.vertices
+    return vertices + character.expressions.displacement(np.eye(len(character.expressions))[0], vertices=len(vertices))
+
+
+def rigged(teacher: StillTeacher) -> Array:
+    """The vertices of a template that expressions move."""
+    assert teacher.rig.expressions is not None
+    return teacher.rig.expressions.vertices

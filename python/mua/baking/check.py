@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from PIL import Image
 
 from mua.baking.listener import Listener
 from mua.baking.settings import BakeSettings
@@ -14,6 +15,7 @@ from mua.baking.sources import load_baked_character
 from mua.errors import InputError
 from mua.fidelity import report
 from mua.fidelity.compare import Fidelity, compare
+from mua.fidelity.face_sheet import face_sheet
 from mua.fidelity.sheet import fidelity_sheet
 from mua.files.write import replacing, require_writable, write_bytes
 from mua.motion.load import LoadedMotion, counted, load_motions
@@ -54,12 +56,15 @@ def check(settings: BakeSettings, listener: Listener) -> Check:
     qualities = tuple(_quality(settings, character, motion) for motion in loaded)
     listener.stage("comparison with source")
     clips = [m.clip for m in loaded]
-    fidelity, warnings = fidelity_of(character, clips, texels=settings.student.texels)
+    fidelity, warnings = fidelity_of(character, clips, texels=settings.student.texels, faces=True)
     pairs, unmatched = _matched(character, loaded) if settings.motions else ((), ())
     written = []
     if fidelity is not None:
         written.append(settings.beside("_check.png"))
-        write_sheet(written[0], fidelity)
+        write_sheet(written[0], fidelity_sheet(fidelity))
+        if fidelity.face is not None:
+            written.append(settings.beside("_check_face.png"))
+            write_sheet(written[-1], face_sheet(fidelity.face))
     if pairs or unmatched:
         written.append(settings.beside("_mapping.json"))
         write_mapping(written[-1], pairs, unmatched)
@@ -78,21 +83,30 @@ def check(settings: BakeSettings, listener: Listener) -> Check:
     )
 
 
-def fidelity_of(character: Character, clips: Sequence[Clip], *, texels: int) -> tuple[Fidelity | None, tuple[str, ...]]:
-    """How much the splats look like the character, and a sentence for what is poor; None where nothing is measured."""
+def fidelity_of(
+    character: Character,
+    clips: Sequence[Clip],
+    *,
+    texels: int,
+    faces: bool = False,
+) -> tuple[Fidelity | None, tuple[str, ...]]:
+    """How much the splats look like the character, and a sentence for what is poor; None where nothing is measured.
+
+    With `faces`, also in each of its expressions.
+    """
     if character.source is None:
         return None, (WITHOUT_FILE,)
     try:
-        fidelity = compare(character, clips, texels=texels, source=character.source)
+        fidelity = compare(character, clips, texels=texels, source=character.source, faces=faces)
     except InputError as error:
         return None, (f"The splats were not compared with the source: {error}.",)
     return fidelity, report.sentences(fidelity)
 
 
-def write_sheet(path: Path, fidelity: Fidelity) -> None:
-    """Write the image of source beside splats."""
+def write_sheet(path: Path, picture: Image.Image) -> None:
+    """Write a picture of source beside splats."""
     with replacing(path) as temporary:
-        fidelity_sheet(fidelity).save(temporary)
+        picture.save(temporary)
 
 
 def as_dict(settings: BakeSettings, found: Check) -> dict[str, Any]:

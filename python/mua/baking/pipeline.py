@@ -53,11 +53,14 @@ def _bake(settings: BakeSettings, device: torch.device, listener: Listener) -> B
     for sentence in (*character.notes, describe_texels(character, settings.student.texels), *notes):
         listener.note(sentence)
     student_settings = settings_for(settings, character)
-    training, held = split(clips, settings.hold_out)
+    bodies = [
+        replace(clip, expressions=None) for clip in clips
+    ]  # expressions are not learnt: they follow from the mesh
+    training, held = split(bodies, settings.hold_out)
     planned = plan(training, held, frames=settings.student.frames)
     choose(clips, settings.clips)  # before hours of work
     recorded_frames = sum(len(clip.wanted) for clip in planned if not clip.held_out)
-    ranges = planned_range(settings, character, clips, recorded_frames)
+    ranges = planned_range(settings, character, bodies, recorded_frames)
     listener.note(describe_plan(planned, ranges, asked=settings.student.frames))
     planned += ranges
 
@@ -105,11 +108,12 @@ def _record(settings: BakeSettings, character: Character, planned: list[PlannedC
 
 def parts(settings: BakeSettings, character: Character) -> Iterator[bytes]:
     """What the stand-in teacher's frames depend on, besides the motion."""
-    skeleton, mesh = character.skeleton, character.mesh
+    skeleton, mesh, face = character.skeleton, character.mesh, character.expressions
     yield f"in parts {settings.student.texels} {settings.student.seed} {skeleton.names} {skeleton.root}".encode()
     for array in (
         *(skeleton.parents, skeleton.bind_rotations, skeleton.bind_translations),
         *(mesh.vertices, mesh.faces, mesh.uv, mesh.uv_faces, character.base_color),
         *(character.skin_indices, character.skin_weights, character.looseness),
+        *(() if face is None else (face.starts, face.vertices, face.offsets)),  # which template and hidden texels heed
     ):
         yield b"none" if array is None else f"{array.shape}".encode() + array.tobytes()

@@ -11,6 +11,7 @@ from mua.characters.assemble import assemble
 from mua.characters.bind_pose import bind_pose
 from mua.characters.collapsed import without_collapsed
 from mua.characters.correction import corrected
+from mua.characters.expressions import moved_expressions, with_weights
 from mua.characters.joint_tree import is_hips
 from mua.characters.rigid_skeleton import rigid_skeleton, roles_of
 from mua.errors import InputError
@@ -30,6 +31,7 @@ class Animation:
     clips: tuple[Clip, ...]
     notes: tuple[str, ...]
     roles: Mapping[str, str] = field(default_factory=dict)  # joint to body part, where the file itself says it
+    expressions: tuple[str, ...] = ()  # names of those that the clips hold weights of
 
 
 def bare_animation(scene: Scene, path: Path) -> Animation:
@@ -47,7 +49,9 @@ def bare_animation(scene: Scene, path: Path) -> Animation:
     scene, change = corrected(scene, bind, points=bind.places[bind.mass > 0], stand=False)
     rigged = rigid_skeleton(scene, bind_pose(scene))
     notes = (*scene.notes, *change.size_notes, *change.notes, *rigged.notes)
-    return Animation(rigged.skeleton, rigged.clips, notes, roles_of(scene, rigged))
+    names = moved_expressions(scene.motions)
+    clips = with_weights(rigged.clips, scene.motions, names)
+    return Animation(rigged.skeleton, clips, notes, roles_of(scene, rigged), names)
 
 
 def whole_animation(meshed: Scene, bare: Iterable[Scene], path: Path) -> Animation:
@@ -59,7 +63,8 @@ def whole_animation(meshed: Scene, bare: Iterable[Scene], path: Path) -> Animati
     found: Animation | None = None
     if any(len(part.faces) for part in meshed.parts):
         rig = assemble(meshed, path)
-        found = Animation(rig.skeleton, rig.clips, (), rig.roles)
+        names = moved_expressions(meshed.motions)
+        found = Animation(rig.skeleton, with_weights(rig.clips, meshed.motions, names), (), rig.roles, names)
     for scene in bare:
         if found is None or limb_count(found.skeleton) < LIMBS:
             other = bare_animation(scene, path)

@@ -12,7 +12,7 @@ from mua.characters.alpha import NOTHING_SAID, Alphas, with_alphas
 from mua.characters.bind_pose import Bind, bind_pose
 from mua.characters.collapsed import without_collapsed
 from mua.characters.correction import corrected
-from mua.characters.expressions import fingerprints, joined_targets
+from mua.characters.expressions import fingerprints, joined_targets, with_weights
 from mua.characters.facing import AS_SHOWN, Facing
 from mua.characters.messages import UNHELD, Messages
 from mua.characters.outline import outlines
@@ -98,7 +98,7 @@ def assemble(
         skin_indices=indices,
         skin_weights=mesh.weights.astype(np.float32),
         expressions=mesh.expressions,
-        clips=rigged.clips,
+        clips=with_weights(rigged.clips, scene.motions, () if mesh.expressions is None else mesh.expressions.names),
         source=Source(scene, rigged.nodes),
         corner_colors=None if (mesh.colors == 1).all() else mesh.colors,
         roles=roles_of(scene, rigged),

@@ -1,13 +1,16 @@
 """The targets of a character's parts as its expressions: one for each name, over the vertices of all parts."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from mua.arrays import Array
 from mua.characters.messages import listed
+from mua.pose.clip import Clip
+from mua.pose.expression_names import match_expressions
 from mua.rig.expressions import Expressions
-from mua.scene import Target
+from mua.scene import Motion, Target
 
 STILL = 1e-5  # of the character's size: a target that moves a vertex less does not move it (0.02 mm on a person)
 APART = 1e-4  # of the character's size: vertices at one place whose targets differ by this are two, as on lips
@@ -58,3 +61,21 @@ def fingerprints(expressions: Expressions, vertices: int, *, size: float) -> Arr
     found = np.zeros(vertices, np.int64)
     np.add.at(found, expressions.vertices, (steps * factors[expression]).sum(axis=1))  # wraps around
     return found[:, None] >> 12
+
+
+def with_weights(clips: Sequence[Clip], motions: Sequence[Motion], names: Sequence[str]) -> tuple[Clip, ...]:
+    """The clips of a scene's motions with the weights of expressions of these names, where a motion moves any."""
+    return tuple(replace(c, expressions=_weights(m, names)) for c, m in zip(clips, motions, strict=True))
+
+
+def moved_expressions(motions: Sequence[Motion]) -> tuple[str, ...]:
+    """The names of all expressions that some motion moves."""
+    return tuple(dict.fromkeys(name for motion in motions for name in motion.weights))
+
+
+def _weights(motion: Motion, names: Sequence[str]) -> Array | None:
+    """The weights [F, E] of expressions that a motion may call by other names; None where it moves none of them."""
+    matrix = match_expressions(names, [*motion.weights])
+    if not matrix.any():
+        return None
+    return np.clip(np.stack([*motion.weights.values()], axis=1) @ matrix.T, 0, 1)

@@ -13,6 +13,7 @@ from mua.baking.settings import BakeSettings
 from mua.cli.console import brief, printer, say
 from mua.cli.display import Display
 from mua.fidelity.compare import Fidelity
+from mua.fidelity.faces import FaceFidelity
 from mua.files.write import require_writable
 from mua.motion.quality import MotionQuality
 
@@ -80,6 +81,8 @@ def show(console: Console, found: Check, *, verbose: bool = False) -> None:
         say(console, "Nothing looks wrong.")
     if found.fidelity is not None:
         console.print(_fidelity_table(found.fidelity))
+        if found.fidelity.face is not None:
+            say(console, _face(found.fidelity.face))
     if any(motion.limbs for motion in found.motions):
         motions = found.motions if verbose else sorted(found.motions, key=lambda motion: -len(motion.flaws))[:SCREEN]
         console.print(_motion_table(tuple(motions)))
@@ -102,6 +105,15 @@ def show(console: Console, found: Check, *, verbose: bool = False) -> None:
         say(console, "Nothing moves: " + (", ".join(found.unmatched) or "no joint with skin") + ".")
     for path in found.written:
         say(console, str(path))
+
+
+def _face(face: FaceFidelity) -> str:
+    """How many expressions there are, and how like the source the face is in them."""
+    decibels = sorted(shot.agreement.psnr for shot in face.expressions)
+    return (
+        f"Face: {len(decibels)} expressions at weight 1 compared with the source: least {decibels[0]:.1f} dB "
+        f"({face.worst.name}), median {decibels[len(decibels) // 2]:.1f} dB, at rest {face.rest.agreement.psnr:.1f} dB."
+    )
 
 
 def _fidelity_table(fidelity: Fidelity) -> Table:

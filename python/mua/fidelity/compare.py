@@ -11,6 +11,7 @@ from mua.arrays import Array
 from mua.avatar.camera import Camera, orbit
 from mua.avatar.decode import pose_splats
 from mua.fidelity.canvas import opened
+from mua.fidelity.faces import FaceFidelity, compare_faces
 from mua.fidelity.measure import Agreement, agreement, together, worst_place
 from mua.fidelity.painter import Painter
 from mua.fidelity.posing import Moment, Poser, dominant_joints, skinned
@@ -62,6 +63,7 @@ class Fidelity:
     """The comparison over all poses."""
 
     poses: tuple[PoseFidelity, ...]
+    face: FaceFidelity | None = None  # None where the character has no expressions, or none was asked for
 
     @property
     def iou(self) -> float:
@@ -78,9 +80,12 @@ class Fidelity:
         return max(self.poses, key=lambda pose: pose.worst.difference)
 
 
-def compare(character: Character, clips: Sequence[Clip], *, texels: int, source: Source) -> Fidelity:
+def compare(
+    character: Character, clips: Sequence[Clip], *, texels: int, source: Source, faces: bool = False
+) -> Fidelity:
     """Draw a character's source and its splats as the file stands and in frames spread over `clips`.
 
+    With `faces`, also close up in each of the character's expressions.
     Raises InputError where this machine has no OpenGL.
     """
     poser = Poser(source, character.skeleton)
@@ -89,7 +94,8 @@ def compare(character: Character, clips: Sequence[Clip], *, texels: int, source:
     with opened() as context:
         studio = _Studio(context, source, poser)
         views = [ROUND, *({side: degrees} for side, degrees in itertools.islice(itertools.cycle(IN_MOTION), POSED))]
-        return Fidelity(tuple(studio.pictured(teacher, m, v) for m, v in zip(moments, views, strict=False)))
+        poses = tuple(studio.pictured(teacher, m, v) for m, v in zip(moments, views, strict=False))
+        return Fidelity(poses, compare_faces(context, teacher, source=source, rest=moments[0]) if faces else None)
 
 
 def spread(clips: Sequence[Clip], count: int) -> list[tuple[Clip, int]]:

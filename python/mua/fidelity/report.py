@@ -3,9 +3,14 @@
 from typing import Any
 
 from mua.fidelity.compare import Fidelity, PoseFidelity, Shot
+from mua.fidelity.faces import FaceFidelity
+from mua.fidelity.measure import Agreement
 
 GOOD_IOU = 0.97
 GOOD_PSNR = 30.0  # decibels
+LOST = 2.0  # decibels: an expression that loses more against the face at rest is worth a look
+LOST_OVERLAP = 0.01  # the same of the silhouettes
+SHOWN = 8  # expressions that a sentence names
 
 
 def summary(fidelity: Fidelity) -> str:
@@ -31,7 +36,35 @@ def sentences(fidelity: Fidelity) -> tuple[str, ...]:
             f"The colours of splats and character have a PSNR of only {least.agreement.psnr:.1f} dB in the pose "
             f"{least.pose!r} (from {GOOD_PSNR:.0f} dB on they look alike); worst at {_where(least.worst)}."
         )
-    return tuple(found)
+    return (*found, *_face_sentences(fidelity.face))
+
+
+def _face_sentences(face: FaceFidelity | None) -> tuple[str, ...]:
+    """A sentence on expressions in which the face is less like its source than at rest."""
+    if face is None:
+        return ()
+    rest = face.rest.agreement
+    poor = [shot for shot in face.expressions if _is_poor(shot.agreement, rest)]
+    if not poor:
+        return ()
+    poor.sort(key=lambda shot: shot.agreement.psnr)
+    named = ", ".join(_figures(shot.name, shot.agreement) for shot in poor[:SHOWN])
+    more = f" and {len(poor) - SHOWN} more" if len(poor) > SHOWN else ""
+    return (f"The face is less like the character than at rest ({_figures('', rest)}) in: {named}{more}.",)
+
+
+def _is_poor(found: Agreement, rest: Agreement) -> bool:
+    return found.psnr < min(rest.psnr - LOST, GOOD_PSNR) or found.iou < min(rest.iou - LOST_OVERLAP, GOOD_IOU)
+
+
+def _figures(name: str, found: Agreement) -> str:
+    return f"{name} {100 * found.iou:.1f} %, {found.psnr:.1f} dB".lstrip()
+
+
+def _face(face: FaceFidelity | None) -> dict[str, dict[str, float]]:
+    """The figures of the face at rest and in each expression; none without expressions."""
+    shots = () if face is None else (face.rest, *face.expressions)
+    return {shot.name: {"iou": shot.agreement.iou, "psnr": shot.agreement.psnr} for shot in shots}
 
 
 def as_dict(fidelity: Fidelity) -> dict[str, Any]:
@@ -40,6 +73,7 @@ def as_dict(fidelity: Fidelity) -> dict[str, Any]:
     return {
         "iou": fidelity.iou,
         "psnr": fidelity.psnr,
+        "expressions": _face(fidelity.face),
         "worst": {"pose": worst.pose, **_place(worst.worst)},
         "poses": [
             {

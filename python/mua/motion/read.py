@@ -32,4 +32,5 @@ def _read_rig_clips(path: Path) -> list[SourceMotion]:
     animation = read_animation(path)
     if not animation.clips:
         raise InputError(f"{path}: expected an animation, found none")
-    return [SourceMotion(animation.skeleton, clip, animation.notes, animation.roles) for clip in animation.clips]
+    shared = (animation.notes, animation.roles, animation.expressions)
+    return [SourceMotion(animation.skeleton, clip, *shared) for clip in animation.clips]

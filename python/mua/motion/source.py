@@ -18,6 +18,7 @@ class SourceMotion:
     clip: Clip
     notes: tuple[str, ...] = ()  # decisions of the reader that the user should know, a sentence each
     stated: Mapping[str, str] = field(default_factory=dict)  # joint to role, where the file itself says it
+    expressions: tuple[str, ...] = ()  # names of those that the clip holds weights of
 
     def places(self, poses: int) -> Array:
         """Where the joints are [P, J, 3] in at most `poses` frames, spread over the clip."""

@@ -2,6 +2,7 @@
 
 from ctypes import c_float, c_size_t
 from dataclasses import dataclass
+from itertools import pairwise
 
 import meshoptimizer
 import numpy as np
@@ -16,7 +17,9 @@ ATTEMPTS = 6  # attempts: how many vertices a number of triangles leaves is only
 UV_WEIGHT = 4.0  # weight of an error in UV relative to the distance on the surface that it stands for
 SKIN_WEIGHT = 0.5  # share of the character's size: the error of a vertex that moves with a wrong joint
 SKIN_DIRECTIONS = 24  # dimensions of the space of skin weights; the library takes 32 attributes
-FACE_DIRECTIONS = 6  # of the space of expressions' offsets; UVs take the other two
+FACE_WEIGHT = 300.0  # of a metre that an expression moves a vertex wrongly: the triangles about lips and lids are small
+FACE_DIRECTIONS = 14  # random directions that stand for all expressions' offsets, where there are any
+SKIN_BESIDE_FACE = 16  # dimensions of the space of skin weights beside these
 NO_ERROR_LIMIT = c_float(1e9)  # only the number of triangles ends the decimation
 
 
@@ -61,21 +64,23 @@ def _skin_directions(character: Character) -> Array:
     weights = np.zeros((len(character.skin_weights), character.skin_indices.max() + 1))
     np.add.at(weights, (np.arange(len(weights))[:, None], character.skin_indices), character.skin_weights)
     weights -= weights.mean(axis=0)
-    return weights @ np.linalg.eigh(weights.T @ weights)[1][:, -SKIN_DIRECTIONS:]
+    count = SKIN_DIRECTIONS if character.expressions is None else SKIN_BESIDE_FACE
+    return weights @ np.linalg.eigh(weights.T @ weights)[1][:, -count:]
 
 
 def _face_directions(character: Character) -> Array:
-    """The principal components [V, n] of how far the expressions move the vertices, metres; no column without any."""
+    """How far expressions move the vertices, metres, along random directions [V, n] through all of them.
+
+    Differences between vertices keep their length on average (Johnson and Lindenstrauss 1984), so that a blink counts
+    beside a jaw that opens, which principal components would leave out.
+    """
     expressions, count = character.expressions, len(character.mesh.vertices)
-    if expressions is None:
-        return np.zeros((count, 0))
-    vertices, row = np.unique(expressions.vertices, return_inverse=True)
-    offsets = np.zeros((len(vertices), len(expressions), 3))
-    offsets[row, np.repeat(np.arange(len(expressions)), np.diff(expressions.starts))] = expressions.offsets
-    moved = offsets.reshape(len(vertices), -1)
-    directions = np.linalg.eigh(moved.T @ moved)[1][:, -FACE_DIRECTIONS:]
-    found = np.zeros((count, directions.shape[1]))
-    found[vertices] = moved @ directions
+    found = np.zeros((count, 0 if expressions is None else FACE_DIRECTIONS))
+    if expressions is not None:
+        rng = np.random.default_rng(0)
+        along = rng.standard_normal((len(expressions), 3, FACE_DIRECTIONS)) / np.sqrt(FACE_DIRECTIONS)
+        for e, (start, stop) in enumerate(pairwise(expressions.starts)):
+            found[expressions.vertices[start:stop]] += expressions.offsets[start:stop] @ along[e]
     return found
 
 
@@ -92,7 +97,7 @@ def _decimate(
     metres_per_uv = np.sqrt(areas(mesh.vertices[mesh.faces]).sum() / max(areas(mesh.uv[mesh.uv_faces]).sum(), 1e-12))
     extent = meshoptimizer.simplify_scale(positions)
     uv = mesh.uv[pairs[:, 1]] * (UV_WEIGHT * metres_per_uv / extent)
-    skin, face = skin[pairs[:, 0]] * SKIN_WEIGHT, face[pairs[:, 0]] / extent
+    skin, face = skin[pairs[:, 0]] * SKIN_WEIGHT, face[pairs[:, 0]] * (FACE_WEIGHT / extent)
     attributes = np.column_stack([uv, skin, face]).astype(np.float32)
     triangles = len(mesh.faces) * vertices / len(mesh.vertices)
     for _ in range(ATTEMPTS):

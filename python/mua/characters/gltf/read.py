@@ -149,7 +149,7 @@ def _scene(document: Document, tree: Tree, skins: list[Skin], *, vrm: Vrm) -> Sc
     nodes, parents = tree.followed(int(node) for skin in skins for node in skin.joints)
     index = {node: n for n, node in enumerate(nodes)}
     rest = np.array([local_matrix(document, node) for node in nodes]).reshape(-1, 4, 4)
-    motions, left_out = read_animations(document, nodes, parents=parents, rest=rest)
+    motions, left_out = read_animations(document, nodes, parents=parents, rest=rest, vrm=vrm)
     return Scene(
         name=document.path.stem,
         node_names=tuple(node_name(document, node) for node in nodes),

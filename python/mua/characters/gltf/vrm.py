@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from mua.characters.gltf.document import Document
-from mua.characters.gltf.vrm_expressions import VrmExpression, read_expressions
+from mua.characters.gltf.vrm_expressions import VrmExpression, animated_expressions, read_expressions
 
 FIRST, SECOND, ANIMATION = "VRM", "VRMC_vrm", "VRMC_vrm_animation"
 SPRINGS, CONSTRAINT, MTOON = "VRMC_springBone", "VRMC_node_constraint", "VRMC_materials_mtoon"
@@ -41,6 +41,7 @@ class Vrm:
     hidden_nodes: frozenset[int] = frozenset()  # nodes whose meshes only the wearer's own camera shows
     hidden_meshes: frozenset[int] = frozenset()
     expressions: tuple[VrmExpression, ...] = ()
+    expression_nodes: Mapping[int, str] = field(default_factory=dict)  # of an animation: whose x is the weight
     notes: tuple[str, ...] = ()
 
     @property
@@ -63,7 +64,8 @@ def read_vrm(document: Document) -> Vrm:
             nodes, meshes = _first_person(document, vrm, where)
             expressions, unlike = read_expressions(document, vrm, where)
             notes = (*_credit(vrm), *_not_carried(document, vrm, extensions), *unlike)
-            return Vrm(bones, nodes, meshes, expressions, notes)
+            moved = animated_expressions(document, vrm, where) if name == ANIMATION else {}
+            return Vrm(bones, nodes, meshes, () if moved else expressions, moved, notes)
     return NO_VRM
 
 

@@ -46,6 +46,15 @@ def read_expressions(
     return tuple(found.values()), messages.notes()
 
 
+def animated_expressions(document: Document, animation: dict[str, Any], where: str) -> dict[int, str]:
+    """The expression of each node of a VRM animation whose x is the weight of one."""
+    found: dict[int, str] = {}
+    for name, entry, at in _tables(document, animation, where):
+        document.item("nodes", entry.get("node"), field=f"{at}.node")
+        found[int(entry["node"])] = name
+    return found
+
+
 def _groups(document: Document, vrm: dict[str, Any], where: str) -> list[tuple[str, dict[str, Any], str]]:
     """VRM 0: a list of groups, each a preset or one with a name of its own."""
     where = f"{where}.blendShapeMaster"
