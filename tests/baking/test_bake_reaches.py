@@ -48,8 +48,11 @@ class Reached(Exception):
 
 
 def with_hat(directory: Path) -> None:
-    """A column with two clips, and a second column beside it that is called hat and is of felt."""
+    """A column with two clips and an expression, and a second column beside it that is called hat and is of felt."""
     glb = gltf_files.body()
+    lean = np.where(gltf_files.POINTS[:, 1:2] > 1, [[0.1, 0, 0]], 0)
+    gltf_files.primitive(glb)["targets"] = [{"POSITION": glb.accessor(lean)}]
+    glb.json["meshes"][0]["extras"] = {"targetNames": ["jawOpen"]}
     glb.json["materials"] = [{"name": "felt"}]
     glb.json["meshes"].append({"name": "hat", "primitives": [gltf_files.primitive(glb) | {"material": 0}]})
     glb.json["nodes"].append({"mesh": 1, "skin": 0, "name": "hat", "translation": [0.5, 0, 0]})
@@ -69,6 +72,8 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> Path:
     directory = tmp_path_factory.mktemp("reaches")
     with_hat(directory)
     (directory / "walk.bvh").write_text(bvh_text(person(), walk(person(size=1.0))))
+    rows = (f"00:00:0{k // 60}:{k % 60},1,{min(k / 4, 1)}\n" for k in range(120))  # at 60 Hz
+    (directory / "talk.csv").write_text("Timecode,BlendShapeCount,JawOpen\n" + "".join(rows))
     for name in ("wave", "sway"):
         (directory / f"{name}.bvh").write_text(BVH.replace("spine", "thing"))
     for name, joint in (("spine", "spine"), ("head", "head")):
@@ -96,7 +101,9 @@ def run(
             return ran[arguments]
         late = ran[arguments] = Late()
 
-        def compared(character: Character, clips: list[Clip], *, texels: int) -> tuple[None, tuple[str, ...]]:
+        def compared(
+            character: Character, clips: list[Clip], *, texels: int, faces: bool = False
+        ) -> tuple[None, tuple[str, ...]]:
             late.character, late.clips, late.compared = character, tuple(clips), texels
             return None, ()
 

@@ -217,7 +217,7 @@ def test_a_bone_that_does_not_inherit_scale_keeps_its_size(tmp_path: Path) -> No
     np.testing.assert_allclose(found, expected, atol=BOUND)
 
 
-def test_dual_quaternions_and_blend_shapes_are_noted(tmp_path: Path) -> None:
+def test_dual_quaternions_are_noted_and_blend_shapes_read(tmp_path: Path) -> None:
     fbx = Fbx()
     bones = skeleton(fbx)
     skinned(fbx, bones, kind="DualQuaternion")
@@ -228,8 +228,27 @@ def test_dual_quaternions_and_blend_shapes_are_noted(tmp_path: Path) -> None:
     fbx.add("Geometry", "smile", "Shape", *offsets, to=channel)
     read = read_surfaces(fbx.save(tmp_path / "body.fbx"))
     assert any("dual quaternions" in note for note in read.notes)
-    assert any("Blend shapes" in note for note in read.notes)
     assert_is_column(read, BOUND)
+    assert read.expressions is not None
+    assert read.expressions.names == ("smile",)
+    moved = read.expressions.displacement(np.ones(1), vertices=len(read.vertices))
+    rows = [int(np.abs(read.vertices - point).sum(axis=1).argmin()) for point in POINTS[:2]]
+    np.testing.assert_allclose(moved[rows], 1, atol=BOUND)
+    assert np.count_nonzero(moved.any(axis=1)) == 2
+
+
+def test_blend_shapes_count_from_their_weights_at_rest(tmp_path: Path) -> None:
+    fbx = Fbx()
+    skinned(fbx, skeleton(fbx))
+    geometry = next(node.values[0] for node in fbx.objects if node.name == "Geometry")
+    shape = fbx.add("Deformer", "face", "BlendShape", to=geometry)
+    channel = fbx.add("Deformer", "smile", "BlendShapeChannel", fbx_files.Node("DeformPercent", (25.0,)), to=shape)
+    offsets = [fbx_files.Node("Indexes", (np.arange(16, dtype=np.int32),)), fbx_files.Node("Vertices", (np.ones(48),))]
+    fbx.add("Geometry", "smile", "Shape", *offsets, to=channel)
+    read = read_surfaces(fbx.save(tmp_path / "body.fbx"))
+    assert read.expressions is not None
+    np.testing.assert_allclose(read.expressions.offsets, 0.75, atol=BOUND)
+    np.testing.assert_allclose(read.vertices[read.faces].min(axis=(0, 1)), POINTS.min(axis=0) + 0.25, atol=BOUND)
 
 
 def test_hidden_meshes_are_left_out(tmp_path: Path) -> None:

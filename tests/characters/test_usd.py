@@ -269,3 +269,52 @@ def test_truncated_package_is_refused(tmp_path: Path, character: Path) -> None:
     package.write_bytes(package.read_bytes()[:200])
     with pytest.raises(InputError, match=r"man\.usdz"):
         read_surfaces(package)
+
+
+def with_shapes(stage: Usd.Stage) -> None:
+    """Two blend shapes of the body, one of which the animation moves."""
+    mesh = next(prim for prim in stage.Traverse() if prim.IsA(UsdGeom.Mesh))
+    count = len(UsdGeom.Mesh(mesh).GetPointsAttr().Get())
+    open_, wide = (UsdSkel.BlendShape.Define(stage, mesh.GetPath().AppendChild(name)) for name in ("Open", "Wide"))
+    open_.CreateOffsetsAttr([Gf.Vec3f(0, 10, 0)] * 2)
+    open_.CreatePointIndicesAttr([0, 1])
+    wide.CreateOffsetsAttr([Gf.Vec3f(5, 0, 0)] * count)
+    wide.CreateInbetween("half")
+    binding = UsdSkel.BindingAPI.Apply(mesh)
+    binding.CreateBlendShapesAttr(["jawOpen", "wide"])
+    binding.CreateBlendShapeTargetsRel().SetTargets([open_.GetPath(), wide.GetPath()])
+    animation = next(UsdSkel.Animation(prim) for prim in stage.Traverse() if prim.IsA(UsdSkel.Animation))
+    animation.CreateBlendShapesAttr(["wide"])
+    times = animation.GetRotationsAttr().GetTimeSamples()
+    weights = animation.CreateBlendShapeWeightsAttr()
+    weights.Set([0.0], times[0])
+    weights.Set([1.0], times[-1])
+
+
+def test_blend_shapes_become_expressions_with_their_weights(character: Path) -> None:
+    path = edited(character, with_shapes)
+    surfaces = read_surfaces(path)
+    assert surfaces.expressions is not None
+    assert surfaces.expressions.names == ("jawOpen", "wide")
+    lengths = np.linalg.norm(surfaces.expressions.offsets, axis=1)
+    first = surfaces.expressions.starts[1]
+    np.testing.assert_allclose(lengths[:first], 0.1, atol=1e-6)  # centimetres of the file
+    np.testing.assert_allclose(lengths[first:], 0.05, atol=1e-6)
+    assert len(lengths) - first == len(surfaces.vertices)
+    assert any("inbetweens" in note for note in surfaces.notes)
+    weights = np.asarray(surfaces.clips[0].expressions)
+    assert not weights[0].any()
+    assert weights[-1, 1] > 0.9
+    assert (np.diff(weights[:, 1]) > 0).all()
+    (source,) = read_motion(path)
+    assert source.expressions == ("wide",)
+
+
+def test_blend_shapes_that_do_not_fit_are_named(character: Path) -> None:
+    def damage(stage: Usd.Stage) -> None:
+        with_shapes(stage)
+        shape = next(UsdSkel.BlendShape(p) for p in stage.Traverse() if p.IsA(UsdSkel.BlendShape))
+        shape.GetPointIndicesAttr().Set([0, 99999])
+
+    with pytest.raises(InputError, match=r"Open\.pointIndices does not fit 2 offsets and \d+ points"):
+        read_surfaces(edited(character, damage))

@@ -50,6 +50,13 @@ def bake(
             default="the character's own clips",
         ),
     ] = (),
+    face: Annotated[
+        PathLike | None,
+        Option(
+            "Facial motion for all clips: a .csv of Live Link Face, or a motion file with expressions.",
+            default="that of the motion",
+        ),
+    ] = None,
     output: OutputOption = "avatar.muaavatar",
     preset: PresetOption = "preview",
     frames: Annotated[

@@ -11,7 +11,7 @@ from PIL import Image
 
 from mua.baking.listener import Listener
 from mua.baking.settings import BakeSettings
-from mua.baking.sources import load_baked_character
+from mua.baking.sources import expressions_of, faced, load_baked_character
 from mua.errors import InputError
 from mua.fidelity import report
 from mua.fidelity.compare import Fidelity, compare
@@ -55,7 +55,7 @@ def check(settings: BakeSettings, listener: Listener) -> Check:
     loaded = _loaded(settings, character)
     qualities = tuple(_quality(settings, character, motion) for motion in loaded)
     listener.stage("comparison with source")
-    clips = [m.clip for m in loaded]
+    clips, of_face = faced(character, [m.clip for m in loaded], settings.face)
     fidelity, warnings = fidelity_of(character, clips, texels=settings.student.texels, faces=True)
     pairs, unmatched = _matched(character, loaded) if settings.motions else ((), ())
     written = []
@@ -73,7 +73,7 @@ def check(settings: BakeSettings, listener: Listener) -> Check:
         motions=qualities,
         matched=pairs,
         unmatched=unmatched,
-        notes=counted((*character.notes, *_notes(loaded)), clips),
+        notes=counted((*character.notes, *_notes(loaded), *of_face), clips),
         warnings=(
             *_refusals(settings, character, loaded),
             *warnings,
@@ -148,6 +148,7 @@ def _loaded(settings: BakeSettings, character: Character) -> list[LoadedMotion]:
             roles=character.roles,
             feet=settings.feet,
             refuse=False,
+            expressions=expressions_of(character),
         )
     ]
 

@@ -28,7 +28,7 @@ def bake_settings(options: Mapping[str, Any]) -> BakeSettings:
     """The settings that the options of `mua.bake` give; raises InputError for options that do not go together."""
     as_given = ("output", "device", "character", "teacher", "hold_out", "feet", "motion_range", "leave_out", "uv")
     settings = BakeSettings(
-        **{name: options[name] for name in (*as_given, "storage", "clips")},
+        **{name: options[name] for name in (*as_given, "face", "storage", "clips")},
         work=work_directory(options["output"], options["work"]),
         student=student_settings(options),
         motions=options["motion"],
@@ -44,6 +44,8 @@ def bake_settings(options: Mapping[str, Any]) -> BakeSettings:
         _check_budget(settings)
     else:
         settings = _with_trained_teacher(settings, options)
+    if settings.face is not None:
+        require_face(settings.face)
     check_output(settings.output, settings.work)
     _check_motion_options(settings)
     return settings
@@ -55,6 +57,14 @@ def student_settings(options: Mapping[str, Any]) -> Settings:
     overrides = {name: options[name] for name in ("frames", "texels") if options.get(name) is not None}
     budget = Budget(mflop=options["budget_mflop"], mb=options["budget_mb"])
     return replace(with_recipe(settings, options["recipe"]), budget=budget, **overrides)
+
+
+def require_face(face: Path) -> None:
+    """Raises InputError for a file that is not there or of a format that holds no face."""
+    if not face.is_file():
+        raise InputError(f"--face {face}: there is no such file")
+    if face.suffix.lower() != ".csv":
+        require_format(face)
 
 
 def _check_motion_options(settings: BakeSettings) -> None:
@@ -79,6 +89,8 @@ def _with_trained_teacher(settings: BakeSettings, options: Mapping[str, Any]) ->
             raise InputError(
                 f"--{name.replace('_', '-')}: the capture's own capture.json says it; leave the option out"
             )
+    if settings.face is not None:
+        raise InputError(f"--face {settings.face}: a filmed person has no expressions (morph targets)")
     check_inputs(None, settings.motions)
     if settings.teacher is None:
         training = teacher_preset(TEACHER_PRESETS[options["preset"]])

@@ -18,7 +18,7 @@ from mua.baking.ranges import clips_of, planned_range, settings_for
 from mua.baking.recorded import recorded, recording_key
 from mua.baking.report import STAND_IN
 from mua.baking.settings import BakeSettings
-from mua.baking.sources import load_baked_character
+from mua.baking.sources import faced, load_baked_character
 from mua.fidelity import report
 from mua.fidelity.compare import Fidelity
 from mua.files.lock import DirectoryLock
@@ -50,7 +50,8 @@ def _bake(settings: BakeSettings, device: torch.device, listener: Listener) -> B
     listener.stage("character")
     character = load_baked_character(settings)
     clips, notes = clips_of(settings, character)
-    for sentence in (*character.notes, describe_texels(character, settings.student.texels), *notes):
+    clips, of_face = faced(character, clips, settings.face)
+    for sentence in (*character.notes, describe_texels(character, settings.student.texels), *notes, *of_face):
         listener.note(sentence)
     student_settings = settings_for(settings, character)
     bodies = [

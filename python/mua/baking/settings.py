@@ -29,6 +29,7 @@ class BakeSettings:
     device: DeviceName = "auto"  # that the student is trained on
     character: Path | None = None  # None: the procedural character
     motions: tuple[Path, ...] = ()  # none: the character's own clips
+    face: Path | None = None  # facial motion for all clips; None: what the motion itself has
     hold_out: tuple[str, ...] = ()  # names of clips; none: the end of every clip
     mapping: Mapping[str, str] | None = None  # target joint to source joint
     feet: Feet = "auto"  # whether feet are held where the motion's feet stand

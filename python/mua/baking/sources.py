@@ -11,6 +11,7 @@ from mua.characters.facing import AS_SHOWN, Facing
 from mua.characters.figure_size import AS_FOUND, FigureSize
 from mua.characters.read import read_character
 from mua.errors import InputError
+from mua.motion.face import with_face
 from mua.motion.load import counted, load_motions, unique_names
 from mua.motion.planted_feet import Feet
 from mua.motion.quality import measure_motion
@@ -99,10 +100,34 @@ def load_clips(
     notes: list[str] = []
     for path in motions:
         for loaded in load_motions(
-            path, character.skeleton, mapping=mapping, rate=RATE, roles=character.roles, feet=feet
+            path,
+            character.skeleton,
+            mapping=mapping,
+            rate=RATE,
+            roles=character.roles,
+            feet=feet,
+            expressions=expressions_of(character),
         ):
             quality = measure_motion(loaded.source, character.skeleton, loaded.clip, loaded.matches)
             require_names(str(path), (), (), [loaded.clip.name])
             clips.append(loaded.clip)
             notes += (*loaded.notes, *quality.flaws)
     return unique_names(clips), list(counted(notes, clips))
+
+
+def expressions_of(character: Character) -> tuple[str, ...]:
+    """The names of a character's expressions."""
+    return () if character.expressions is None else character.expressions.names
+
+
+def faced(
+    character: Character,
+    clips: Sequence[Clip],
+    face: Path | None,  # facial motion; None: each clip has its own, if any
+) -> tuple[list[Clip], list[str]]:
+    """The clips with facial motion of a file of its own; and notes. Errors: InputError where there is no face."""
+    if face is None:
+        return list(clips), []
+    if character.expressions is None:
+        raise InputError(f"--face {face}: {character.name} has no expressions (morph targets) that it could move")
+    return with_face(clips, face, character.expressions.names)

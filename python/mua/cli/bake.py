@@ -16,7 +16,7 @@ from mua.files.inputs import is_capture
 
 PANELS = {
     "Character": ("scale", "height", "facing", "turn", "leave_out", "alpha", "uv", "detail"),
-    "Motion": ("mapping", "feet", "motion_range", "hold_out", "clips"),
+    "Motion": ("face", "mapping", "feet", "motion_range", "hold_out", "clips"),
     "Training": ("frames", "texels", "recipe", "storage", "seed", "device", "jobs", "work"),
 }
 

@@ -14,7 +14,8 @@ ADVICE = {  # for other kinds of motion files
         (".pkl", ".pickle", ".pt", ".pth"), f"opening it may run code; where you trust it, open it and {SAVE_NPZ}"
     ),
     ".npy": f"it holds one array without names; {SAVE_NPZ}",
-    **dict.fromkeys((".c3d", ".trc", ".csv", ".tsv"), "markers have no joints; solve a skeleton and export it as BVH"),
+    **dict.fromkeys((".c3d", ".trc", ".tsv"), "markers have no joints; solve a skeleton and export it as BVH"),
+    ".csv": "one of Live Link Face holds a face alone (mua-bake --face); of markers, solve a skeleton and export a BVH",
     **dict.fromkeys((".asf", ".amc", ".htr", ".vmd"), "import it in Blender or MotionBuilder and export it as BVH"),
 }
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from mua.errors import InputError
+from mua.motion.face import own_face
 from mua.motion.match import Matches, match_joints, require_limbs
 from mua.motion.planted_feet import Feet, plant_feet
 from mua.motion.read import read_motion
@@ -36,6 +37,7 @@ def load_motions(
     roles: Mapping[str, str] | None = None,  # joint of `skeleton` to role, where the character's file itself says it
     feet: Feet = "auto",  # whether standing feet are held in place
     refuse: bool = True,  # whether motion that moves no arm, leg or spine of the character is an error, else a note
+    expressions: Sequence[str] = (),  # names of the character's
 ) -> list[LoadedMotion]:
     """The clips of a motion file, or of every file of a directory, on `skeleton`, each with what it was made from.
 
@@ -43,10 +45,20 @@ def load_motions(
     Errors: InputError naming the file where it cannot be read or moves no arm, leg or spine of the character.
     """
     return [
-        _put_on(
-            path, source, skeleton, mapping=mapping, rate=rate, roles=roles, feet=feet, refuse=refuse and not mapping
-        )
+        replace(put, clip=own_face(source, put.clip, expressions))
         for source in read_motion(path)
+        for put in [
+            _put_on(
+                path,
+                source,
+                skeleton,
+                mapping=mapping,
+                rate=rate,
+                roles=roles,
+                feet=feet,
+                refuse=refuse and not mapping,
+            )
+        ]
     ]
 
 

@@ -26,7 +26,7 @@ def player_clips(
     """
     rate = avatar.encoding.rate
     if motion is not None:
-        loaded = load_motions(motion, avatar.rig.skeleton, mapping=mapping, rate=rate)
+        loaded = load_motions(motion, avatar.rig.skeleton, mapping=mapping, rate=rate, expressions=avatar.expressions)
         clips = [one.clip for one in loaded]
         return unique_names(clips), counted([note for one in loaded for note in one.notes], clips)
     if not avatar.clips:

@@ -10,6 +10,7 @@ import ufbx
 from mua.arrays import Array
 from mua.characters.fbx.bindings import get, items
 from mua.characters.fbx.nodes import Nodes
+from mua.characters.fbx.shapes import keyed_channels, read_weights
 from mua.characters.messages import Messages
 from mua.characters.node_tree import compose
 from mua.errors import InputError
@@ -29,6 +30,7 @@ class Take:
     start: float  # seconds of the first frame
     frames: int
     local: dict[int, Array]  # by node with keys, [F, 4, 4] to its parent, of the topmost to the world
+    weights: dict[str, Array]  # by expression that has keys, [F] 0 to 1
 
     @property
     def moved(self) -> set[int]:
@@ -47,13 +49,14 @@ def read_takes(scene: Any, nodes: Nodes, path: Path, messages: Messages) -> list
         name = str(get(stack, "name"))
         keyed = _keyed_nodes(stack, nodes)
         start, end = _range(scene, stack)
-        if not keyed:
+        face = keyed_channels(scene, stack)
+        if not keyed and not face:
             messages.add("Clips that move no joint are left out: {}.", name)
         elif not end - start >= 0.5 / rate:
             messages.add("Clips of a single pose are left out: {}.", name)
         else:
             count = np.floor((end - start) * rate + 1e-3) + 1
-            if not count * len(keyed) <= MOST:
+            if not count * (len(keyed) + len(face)) <= MOST:
                 raise InputError(
                     f"{path}: animation stack {name} lasts {end - start:g} s, which makes {count:g} frames of "
                     f"{len(keyed)} nodes, expected at most {MOST:,} in all"
@@ -62,7 +65,7 @@ def read_takes(scene: Any, nodes: Nodes, path: Path, messages: Messages) -> list
             local = {node: _sampled(stack, node, nodes, times) for node in sorted(keyed)}
             if not all(np.isfinite(matrices).all() for matrices in local.values()):
                 raise InputError(f"{path}: animation stack {name} holds a number that is not finite")
-            takes.append(Take(name, rate, start, len(times), local))
+            takes.append(Take(name, rate, start, len(times), local, read_weights(stack, face, times)))
     return takes
 
 

@@ -10,8 +10,10 @@ from mua.arrays import Array
 from mua.atlas.pictures import LINEAR
 from mua.characters.fbx.bindings import array, get, items
 from mua.characters.fbx.polygons import triangulated
+from mua.characters.fbx.shapes import morphed
 from mua.characters.messages import Messages
 from mua.errors import InputError
+from mua.scene import Target
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,6 +28,7 @@ class Geometry:
     triangles: Array  # [F, 3] corners
     material: Array  # [F] int into the materials of the node
     colors: Array | None  # [C, 4] linear colour and opacity
+    targets: tuple[Target, ...]  # the blend shapes from there on
 
     def coordinates(self, uv_set: str) -> tuple[Array, Array] | None:
         """Texture coordinates [T, 2], v up, of the set of this name, else of the first; and their index [C]."""
@@ -50,16 +53,18 @@ def read_geometry(source: Any, name: str, path: Path, messages: Messages) -> Geo
     holes = array(source, "face_hole").ravel()
     counts = np.where(holes, 0, faces[:, 1]) if len(holes) else faces[:, 1]
     triangles, polygon = triangulated(positions[corners], faces[:, 0], counts)
+    moved, targets = morphed(source, positions, name, where, messages)
     material = array(source, "face_material").astype(int).ravel()
     return Geometry(
         source=source,
         name=name,
         where=where,
-        positions=_morphed(source, positions, name, messages),
+        positions=moved,
         corners=corners,
         triangles=triangles,
         material=material[polygon] if len(material) else np.zeros(len(polygon), int),
         colors=_colors(source, len(corners), where),
+        targets=targets,
     )
 
 
@@ -89,17 +94,3 @@ def _colors(source: Any, corners: int, where: str) -> Array | None:
         return None
     colors[:, :3] = np.interp(colors[:, :3] * 255, np.arange(256), LINEAR)
     return colors
-
-
-def _morphed(source: Any, positions: Array, name: str, messages: Messages) -> Array:
-    """The positions [V, 3] moved by the blend shapes as the file has them at rest."""
-    for deformer in items(source, "blend_deformers"):
-        messages.add("Blend shapes keep their weights of the rest pose, in meshes: {}.", name)
-        for channel in items(deformer, "channels"):
-            for key in items(channel, "keyframes"):
-                weight = float(get(key, "effective_weight"))
-                shape = get(key, "shape")
-                moved, offsets = array(shape, "offset_vertices").astype(int).ravel(), array(shape, "position_offsets")
-                if weight and np.isfinite(weight) and moved.max(initial=-1) < len(positions) and len(moved):
-                    np.add.at(positions, moved, weight * offsets)
-    return positions

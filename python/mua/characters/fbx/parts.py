@@ -41,6 +41,7 @@ def _cut(whole: Part, geometry: Geometry, chosen: Array, messages: Messages) -> 
         uv_faces=corners,  # of the mesh, until the material says which coordinates it reads
         joints=whole.joints[used],
         weights=whole.weights[used],
+        targets=tuple(target.at(used) for target in whole.targets),
         colors=None if geometry.colors is None else geometry.colors[corners],
     )
 

@@ -115,6 +115,7 @@ class Reader:
             joints=joints,
             weights=weights,
             node=name,
+            targets=geometry.targets,
         )
         sources = list(items(self._nodes.sources[node], "materials")) if self._wanted == "skinned" else []
         return bound, by_material(whole, geometry, sources, self._looks, self._messages)
@@ -147,7 +148,9 @@ class Reader:
         """The joints of these skins and the nodes above them, renumbered parents first, with their motion."""
         nodes, parents = self._nodes.tree.followed(int(node) for skin in skins for node in skin.joints)
         index = {node: n for n, node in enumerate(nodes)}
-        motions = [self._motion(take, nodes, parents) for take in self._takes if set(take.local) & set(nodes)]
+        motions = [
+            self._motion(take, nodes, parents) for take in self._takes if take.weights or set(take.local) & set(nodes)
+        ]
         return Scene(
             name=self._path.stem,
             node_names=tuple(self._nodes.names[node] or f"node{node}" for node in nodes),
@@ -165,4 +168,4 @@ class Reader:
         for n, node in enumerate(nodes):
             if node in take.local:
                 local[:, n] = take.local[node]
-        return Motion(take.name, take.rate, chain(local, parents), take.start)
+        return Motion(take.name, take.rate, chain(local, parents), take.start, take.weights)

@@ -9,6 +9,7 @@ from pxr import Usd, UsdGeom, UsdShade, UsdSkel
 from mua.arrays import Array
 from mua.characters.messages import Messages
 from mua.characters.usd.materials import Look
+from mua.characters.usd.shapes import read_targets
 from mua.errors import InputError
 from mua.scene import Part
 
@@ -94,6 +95,7 @@ def read_part(
         weights=weights,
         node=mesh.GetPrim().GetParent().GetName(),
         colors=_colors(mesh, look, topology, where),
+        targets=read_targets(target, len(points), where, messages),
     )
 
 

@@ -9,12 +9,12 @@ import numpy as np
 from pxr import Tf, Usd, UsdGeom, UsdSkel
 
 from mua.arrays import Array
-from mua.characters.animation import Animation, bare_animation
-from mua.characters.assemble import assemble
+from mua.characters.animation import Animation, bare_animation, whole_animation
 from mua.characters.messages import UNHELD, Messages
 from mua.characters.usd.materials import read_look
 from mua.characters.usd.mesh import read_part, subsets
 from mua.characters.usd.rigid import Movers, find_movers
+from mua.characters.usd.shapes import read_weights, weight_times
 from mua.characters.usd.skeleton import NO_TIME, PREDICATE, Bones, animated, bindings, columns, read_bones, read_skin
 from mua.errors import InputError
 from mua.scene import Material, Motion, Part, Scene, Skin
@@ -40,8 +40,7 @@ def read_usd_animation(path: Path) -> Animation:
     """
     meshed, bare = usd_scenes(path)
     if any(len(part.faces) for part in meshed.parts):
-        rig = assemble(meshed, path)
-        return Animation(rig.skeleton, rig.clips, ())
+        return replace(whole_animation(meshed, (), path), notes=())
     return bare_animation(next(bare), path)
 
 
@@ -124,8 +123,6 @@ def _parts(
     materials: list[Material] = []
     for s, (prim, target) in enumerate(held):
         mesh = UsdGeom.Mesh(prim)
-        if target is not None and target.HasBlendShapes():
-            messages.add("Blend shapes are left out, of meshes: {}.", prim.GetName())
         for owner, faces in subsets(mesh):
             look = read_look(mesh, owner, path, messages)
             at = {"skin": s, "bones": len(skins[s].joints), "material": len(materials)}
@@ -171,6 +168,7 @@ def _motions(stage: Usd.Stage, nodes: Sequence[_Nodes], *, world: Array) -> list
     animations = [group.query.GetAnimQuery() for group in nodes if isinstance(group, Bones)]
     animations = [animation for animation in animations if animation]
     times = {t for animation in animations for t in animation.GetJointTransformTimeSamples()}
+    times |= weight_times(animations)
     times |= {t for group in nodes for prim in group.prims for t in _transform_times(prim)}
     start, end = (min(times), max(times)) if times else (0.0, 0.0)
     if stage.HasAuthoredTimeCodeRange() and stage.GetStartTimeCode() < end and start < stage.GetEndTimeCode():
@@ -182,7 +180,7 @@ def _motions(stage: Usd.Stage, nodes: Sequence[_Nodes], *, world: Array) -> list
     codes = start + np.arange(count) * per_second / RATE
     worlds = [_worlds(nodes, Usd.TimeCode(float(code)), at_rest=False) for code in codes]
     name = animations[0].GetPrim().GetName() if animations else "Animation"
-    return [Motion(name, RATE, world @ np.array(worlds), start / per_second)]
+    return [Motion(name, RATE, world @ np.array(worlds), start / per_second, read_weights(animations, codes))]
 
 
 def _transform_times(prim: Usd.Prim) -> set[float]:
