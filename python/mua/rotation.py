@@ -16,17 +16,15 @@ def normalize(q: Array) -> Array:
 
 def multiply(a: Array, b: Array) -> Array:
     """Hamilton product of quaternions [..., 4]: the rotation b, then a."""
-    aw, ax, ay, az = np.moveaxis(a, -1, 0)
-    bw, bx, by, bz = np.moveaxis(b, -1, 0)
-    return np.stack(
-        [
-            aw * bw - ax * bx - ay * by - az * bz,
-            aw * bx + ax * bw + ay * bz - az * by,
-            aw * by - ax * bz + ay * bw + az * bx,
-            aw * bz + ax * by - ay * bx + az * bw,
-        ],
-        axis=-1,
-    )
+    aw, ax, ay, az = (a[..., part] for part in range(4))
+    bw, bx, by, bz = (b[..., part] for part in range(4))
+    w = aw * bw - ax * bx - ay * by - az * bz
+    product = np.empty((*w.shape, 4), dtype=w.dtype)
+    product[..., 0] = w
+    product[..., 1] = aw * bx + ax * bw + ay * bz - az * by
+    product[..., 2] = aw * by - ax * bz + ay * bw + az * bx
+    product[..., 3] = aw * bz + ax * by - ay * bx + az * bw
+    return product
 
 
 def conjugate(q: Array) -> Array:
@@ -36,8 +34,8 @@ def conjugate(q: Array) -> Array:
 
 def rotate(q: Array, v: Array) -> Array:
     """Rotate vectors [..., 3] by unit quaternions [..., 4]."""
-    w, x, y, z = np.moveaxis(q, -1, 0)
-    vx, vy, vz = np.moveaxis(v, -1, 0)
+    w, x, y, z = (q[..., part] for part in range(4))
+    vx, vy, vz = (v[..., part] for part in range(3))
     tx, ty, tz = 2 * (y * vz - z * vy), 2 * (z * vx - x * vz), 2 * (x * vy - y * vx)
     turned = np.empty((*tx.shape, 3), dtype=tx.dtype)
     turned[..., 0] = vx + w * tx + (y * tz - z * ty)

@@ -5,9 +5,11 @@ from typing import Any
 
 import pytest
 
+from mua.cli.option_values import parse_listen
 from mua.cli.view import view
 from mua.cli.view_options import Asked, look_of
 from mua.errors import InputError
+from mua.live.receiver import Address
 
 NOWHERE = Path("nowhere.muaavatar")  # an option is refused although there is no such file
 
@@ -30,7 +32,15 @@ NOWHERE = Path("nowhere.muaavatar")  # an option is refused although there is no
         (None, {"azimuth": float("inf")}, "--azimuth is inf; expected a finite number of degrees"),
         (None, {"ipd": float("inf"), "stereo": True}, "--ipd is inf; expected a distance in metres"),
         (None, {"ipd": 0.06}, "--ipd: works only with --stereo, which is not given"),
-        (None, {"mapping": Path("m.json")}, "--mapping: works only with --motion, which is not given"),
+        (None, {"mapping": Path("m.json")}, "--mapping: works only with --motion or --listen, which is not given"),
+        *[
+            (None, {"listen": port}, f"--listen is {port!r}; expected a port from 1 to 65535, or ADDRESS:PORT")
+            for port in ("", "0", "65536", "vmc", ":39539", "127.0.0.1:", "-1", "3²")
+        ],
+        ("v.png", {"listen": "39539"}, "--listen: works only with the window; -o is v.png, an image"),
+        (None, {"listen": "39539", "motion": Path("m.bvh")}, "--motion: works only without --listen"),
+        (None, {"listen": "39539", "clip": "walk"}, "--clip: works only without --listen"),
+        (None, {"listen": "39539", "frame": 3}, "--frame: works only without --listen"),
         ("v.png", {"frames": "0:3"}, "--frames: works only with a video; -o is v.png, an image"),
         ("v.png", {"orbit": 45.0}, "--orbit: works only with the window, a video or a turntable; -o is v.png"),
         ("v.png", {"turntable": True}, "--turntable: -o is v.png; expected -o with a name that ends in .mp4"),
@@ -51,6 +61,18 @@ def test_refuses_before_anything_is_loaded(output: str | None, choice: dict[str,
     assert sentence in str(refused.value)
 
 
+@pytest.mark.parametrize(
+    ("text", "address"),
+    [
+        ("39539", Address(39539, "127.0.0.1")),
+        ("0.0.0.0:39540", Address(39540, "0.0.0.0")),
+        ("localhost:1", Address(1, "localhost")),
+    ],
+)
+def test_a_port_alone_is_of_this_machine(text: str, address: Address) -> None:
+    assert parse_listen(text) == address
+
+
 def test_an_animation_may_have_any_size() -> None:
     assert look_of(Asked(size="33x31"), Path("v.gif")).shot.screen == (33, 31)
 
@@ -67,7 +89,7 @@ def test_a_close_up_follows_unless_said_otherwise(output: Path | None) -> None:
 
 
 @pytest.mark.parametrize(
-    "option", ["frame", "frames", "ipd", "level", "reference", "device", "mapping", "motion", "size", "zoom", "look_at",
+    "option", ["frame", "frames", "ipd", "level", "reference", "device", "motion", "size", "zoom", "look_at",
                "follow", "turntable", "background", "output"],
 )  # fmt: skip
 def test_refuses_in_a_browser_what_its_page_does_not_follow(option: str) -> None:

@@ -1,10 +1,13 @@
 """Every option of mua-view shows in the window, the file or the page that the command line opens."""
 
 import json
+import socket
+import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from http.server import ThreadingHTTPServer
 from pathlib import Path
+from threading import Thread
 from typing import Any
 
 import imageio_ffmpeg
@@ -14,10 +17,13 @@ from bvh_files import BVH
 from commands import Commands
 from PIL import Image
 from rendercanvas.offscreen import RenderCanvas
+from vmc_senders import bundle
 
 import mua.gpu
 from mua.arrays import Array
 from mua.errors import InputError
+from mua.live.live import EASING
+from mua.live.receiver import LOOPBACK, Address, Receiver
 from mua.player import viewer, window
 from mua.player.panel import WIDTH
 from mua.player.session import Session
@@ -149,6 +155,53 @@ def test_a_window_plays_motion_of_another_file_on_the_joints_of_the_mapping(
 ) -> None:
     session = opened(*SIZE, "--motion", str(motion), "--mapping", str(motion.with_name(f"{joint}.json"))).session
     assert (session.clip.name, moved(session)) == ("nod", [joint])
+
+
+def test_a_window_shows_what_another_program_sends(
+    opened: Callable[..., Opened], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """By default it listens on the loopback address; another one is asked for."""
+    heard: list[Address] = []
+    turned = bundle(
+        ("/VMC/Ext/Bone/Pos", "Head", 0.0, 0.1, 0.0, 0.0, 0.6, 0.0, 0.8),
+        ("/VMC/Ext/Blend/Val", "Joy", 0.5),
+        ("/VMC/Ext/Blend/Apply",),
+    )
+
+    class Heard(Receiver):
+        """Hears a program for as long as it is open."""
+
+        def __init__(self, address: Address) -> None:
+            super().__init__(Address(0, address.host))
+            heard.append(address)
+            self.program = Thread(target=self.send)
+            self.program.start()
+
+        def send(self) -> None:
+            with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as program:
+                while self._open:
+                    program.sendto(turned, (LOOPBACK, self.address.port))
+                    time.sleep(0.01)
+
+        def close(self) -> None:
+            super().close()
+            self.program.join()
+
+    monkeypatch.setattr("mua.cli.listening.Receiver", Heard)
+    mapping = tmp_path / "mapping.json"
+    mapping.write_text(json.dumps({"root": "Hips", "tip": "Head"}))
+    live = opened(*SIZE, "--listen", "39539", "--mapping", str(mapping)).session
+    assert heard == [Address(39539)]
+    assert live.live is not None
+    assert live.live.arrived is not None
+    live.live.advance(live.live.arrived + 1.5 * EASING)
+    assert live.live.now.expressions == {"Joy": 0.5}
+    turned = np.abs(live._pose_shown.rotations - live.clip.rotations[0]).max(axis=1) > 0.1
+    assert [name for name, turns in zip(live._stage.rig.skeleton.names, turned, strict=True) if turns] == ["tip"]
+    live.choose_clip(live.clips[1])
+    assert (live.live, live.clip.name) == (None, "wave")
+    opened(*SIZE, "--listen", "0.0.0.0:39540", "--mapping", str(mapping))
+    assert heard[1:] == [Address(39540, "0.0.0.0")]
 
 
 def test_a_window_is_drawn_by_the_device_asked_for(opened: Callable[..., Opened]) -> None:

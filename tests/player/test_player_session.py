@@ -1,21 +1,30 @@
 """The session of the window: its camera, its frame while paused, and the chosen clip and file."""
 
+import re
 from dataclasses import replace
 from pathlib import Path
+from time import monotonic
 from typing import Any
 
 import numpy as np
 import pytest
 import wgpu
+from synthetic_avatar import synthetic_avatar, with_expressions
+from vmc_senders import Program, bundle
 
 from mua import rotation
+from mua.asset import write
 from mua.asset.read import read
 from mua.cli.view_options import Asked, look_of
 from mua.errors import InputError
 from mua.gpu import Device
+from mua.live.live import EASING
+from mua.live.receiver import Address, Receiver
 from mua.player.focus import find_focus
 from mua.player.session import Session
 from mua.player.source import Source
+from mua.pose.components import read_components
+from mua.pose.descriptor import describe_window
 
 
 def session(device: Device, source: Source, **options: Any) -> Session:
@@ -129,3 +138,84 @@ def test_the_detailed_geometry_is_of_the_finest_level(device: Device, avatar_fil
 
 def test_a_level_that_is_not_there_is_a_note(device: Device, avatar_files: tuple[Path, ...]) -> None:
     assert "no level of 384 texels but 32, 16, 8" in " ".join(session(device, Source(avatar_files), level="384").notes)
+
+
+TURNED = (
+    ("/VMC/Ext/Bone/Pos", "Head", 0.0, 0.1, 0.0, 0.0, 0.6, 0.0, 0.8),
+    ("/VMC/Ext/Blend/Val", "Joy", 0.5),
+    ("/VMC/Ext/Blend/Apply",),
+)
+BONES_OF = {"root": "Hips", "tip": "Head"}
+
+
+def test_shows_what_another_program_sends_with_its_window(device: Device, avatar_files: tuple[Path, ...]) -> None:
+    avatar = read(avatar_files[0])
+    with Receiver(Address(0)) as receiver, Program(receiver) as program:
+        shown = session(device, Source(avatar_files, receiver=receiver, mapping=BONES_OF))
+        usage = wgpu.TextureUsage.RENDER_ATTACHMENT
+        target = device.wgpu.create_texture(size=(32, 32, 1), format="rgba8unorm", usage=usage)
+        shown.draw(target)
+        assert shown.live is not None
+        at_ease = shown.outside
+        program.send(bundle(*TURNED))
+        shown.advance(0.0)
+        for later in (EASING / 4, EASING / 2, 2 * EASING):
+            shown.live.advance(monotonic() + later)
+            shown.draw(target)
+            window = describe_window(avatar.rig.skeleton, avatar.encoding, *shown.live.window())
+            assert shown.outside == pytest.approx(read_components(avatar.components, window)[1], abs=1e-6)
+        assert shown.outside != at_ease
+        assert "ms from packet to picture" in receiver.figures
+        moment = shown.live.moment
+        shown.playing = False
+        program.send(bundle(*TURNED))
+        shown.advance(0.1)
+        assert shown.live.moment == moment  # a pause holds the pose
+
+
+def test_says_which_avatar_no_bone_moves(device: Device, avatar_files: tuple[Path, ...]) -> None:
+    with Receiver(Address(0)) as receiver:
+        with pytest.raises(
+            InputError, match=f"^{re.escape(str(avatar_files[0]))}: no bone of VMC is known to move its left arm"
+        ):
+            session(device, Source(avatar_files, receiver=receiver))
+        with pytest.raises(InputError, match="source joint 'Tail' does not exist; expected one of Root, Hips"):
+            session(device, Source(avatar_files, receiver=receiver, mapping={"root": "Tail"}))
+
+
+def test_an_avatar_without_clips_shows_what_another_program_sends(
+    device: Device, avatar_files: tuple[Path, ...], tmp_path: Path
+) -> None:
+    bare = tmp_path / "bare.muaavatar"
+    write(bare, replace(read(avatar_files[0]), clips=()))
+    with Receiver(Address(0)) as receiver:
+        shown = session(device, Source((bare, avatar_files[0]), receiver=receiver, mapping=BONES_OF))
+        assert [clip.name for clip in shown.clips] == ["live"]
+        shown.choose_file(avatar_files[0])
+        assert (shown.failure, [clip.name for clip in shown.clips]) == ("", ["live", "wave"])
+        assert shown.live is not None
+
+
+def test_a_face_that_another_program_sends_is_that_of_the_avatar(device: Device, tmp_path: Path) -> None:
+    """VRM's A opens a jaw as of ARKit; a slider of the panel goes before it."""
+    write(tmp_path / "face.muaavatar", with_expressions(synthetic_avatar()))
+    with Receiver(Address(0)) as receiver, Program(receiver) as program:
+        shown = session(device, Source((tmp_path / "face.muaavatar",), receiver=receiver, mapping=BONES_OF))
+        target = device.wgpu.create_texture(
+            size=(32, 32, 1), format="rgba8unorm", usage=wgpu.TextureUsage.RENDER_ATTACHMENT
+        )
+        shown.draw(target)
+        assert shown.live is not None
+        program.send(bundle(("/VMC/Ext/Blend/Val", "A", 1.0), ("/VMC/Ext/Blend/Apply",)))
+        frame = receiver.newest(monotonic())
+        assert frame is not None
+        for later in (0.0, 1.5 * EASING):
+            shown.live.advance(frame.time + later)
+        mesh = shown._stage.frame.avatars[0].mesh
+        before = mesh.read().copy()
+        shown.draw(target)
+        assert shown.expressions["jawOpen"] == pytest.approx(0.7)
+        assert shown.expressions["eyeBlinkLeft"] == 0
+        assert (mesh.read() != before).any()
+        shown.weights["jawOpen"] = 0.25
+        assert shown.expressions["jawOpen"] == 0.25

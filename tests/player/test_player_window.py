@@ -19,11 +19,15 @@ import numpy as np
 import pytest
 from PIL import ImageGrab
 from rendercanvas.offscreen import RenderCanvas
+from vmc_senders import Program, bundle
 
 from mua.arrays import Array
 from mua.cli.view_options import Asked, look_of
 from mua.errors import InputError
 from mua.gpu import Device
+from mua.live.live import EASING
+from mua.live.receiver import Address, Receiver
+from mua.live.vmc import QUIET
 from mua.player.panel import KEYS, WIDTH
 from mua.player.session import Session
 from mua.player.shot import Look
@@ -99,6 +103,31 @@ def test_the_panel_says_of_how_many_splats_the_figure_is(window: Driven, monkeyp
     window.picture()
     assert f"{window.session.splats:,} splats, {window.session.level}" in said
     assert f"outside of training: {window.session.outside:.0%}" in said
+
+
+def test_the_panel_says_what_comes_from_another_program(
+    device: Device, avatar_files: tuple[Path, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    said: list[str] = []
+    bars: dict[str, float] = {}
+    canvas = RenderCanvas(size=SIZE)
+    with Receiver(Address(0)) as receiver, Program(receiver) as program:
+        source = Source(avatar_files, receiver=receiver, mapping={"root": "Hips", "tip": "Head"})
+        viewer = Viewer(canvas, device, source, LOOK)
+        monkeypatch.setattr("mua.player.panel.imgui.text_wrapped", said.append)
+        monkeypatch.setattr("mua.player.panel.imgui.progress_bar", lambda weight, _, name: bars.update({name: weight}))
+        viewer.session.playing = False
+        program.send(bundle(("/VMC/Ext/Blend/Val", "Joy", 0.5), ("/VMC/Ext/Blend/Val", "Sorrow", 0.0)), b"nonsense")
+        frame = receiver.newest(time.monotonic() + QUIET)
+        assert frame is not None
+        assert viewer.session.live is not None
+        for later in (0.0, 1.5 * EASING):
+            viewer.session.live.advance(frame.time + later)
+        canvas.draw()
+        assert bars["Joy"] == pytest.approx(0.5)
+        assert "Sorrow" not in bars
+        assert any("1 packets are no OSC and were dropped" in sentence for sentence in said)
+    canvas.close()
 
 
 def test_orbits_pans_and_zooms_by_mouse(window: Driven) -> None:

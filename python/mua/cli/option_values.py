@@ -5,12 +5,14 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from mua.errors import InputError
+from mua.live.receiver import LOOPBACK, Address
 from mua.player.levels import AUTO, FULL
 from mua.player.motion import require_frame
 from mua.player.viewpoint import FARTHEST, NEAREST
 from mua.pose.clip import Clip
 
 LARGEST = 8192  # pixels along a side
+HIGHEST_PORT = 65535
 VIDEOS = (".mp4", ".webm", ".gif")
 EVEN = (".mp4", ".webm")  # whose colours are coarser than their pixels
 CLEAR = (".webm", ".gif", ".png", ".webp", ".tif", ".tiff")  # that can be transparent
@@ -49,6 +51,14 @@ def parse_angle(option: str, degrees: float) -> float:
     if not math.isfinite(degrees):
         raise InputError(f"{option} is {degrees}; expected a finite number of degrees")
     return math.radians(degrees)
+
+
+def parse_listen(text: str) -> Address:
+    """A UDP port of this machine from `39539`, or of other addresses of it too, from `0.0.0.0:39539`."""
+    host, _, port = text.rpartition(":")
+    if not (port.isdecimal() and port.isascii() and 0 < int(port) <= HIGHEST_PORT) or (":" in text and not host):
+        raise InputError(f"--listen is {text!r}; expected a port from 1 to {HIGHEST_PORT}, or ADDRESS:PORT")
+    return Address(int(port), host or LOOPBACK)
 
 
 def parse_zoom(zoom: float) -> float:

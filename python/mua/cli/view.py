@@ -1,12 +1,14 @@
 """mua-view: an avatar in a window, in a browser, or as an image, a video or an animation."""
 
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
 from mua.cli.failure import run_command
+from mua.cli.listening import listening
+from mua.cli.option_values import parse_listen
 from mua.cli.options import command_options, lent_by
 from mua.cli.view_options import Asked, check_fitting, check_inputs, kind_of, look_of
 from mua.errors import InputError
@@ -39,11 +41,19 @@ def view(
         typer.Option(help="Frame to show, counted from 0 at the avatar's frame rate; the window pauses there."),
     ] = None,
     frames: Annotated[str | None, typer.Option(help="Frames of a video, as FIRST:END.", show_default="all")] = None,
+    listen: Annotated[
+        str | None,
+        typer.Option(
+            metavar="PORT",
+            help="Show poses and expressions that another program sends by the VMC protocol to this UDP port of this "
+            "machine, by custom 39539; ADDRESS:PORT for another address, 0.0.0.0 being all.",
+        ),
+    ] = None,
     motion: Annotated[Path | None, typer.Option(help="Motion file to play instead of the avatar's own clips.")] = None,
     mapping: Annotated[
         Path | None,
         typer.Option(
-            help="JSON or TOML file that gives, for joints of the avatar, the joint of the motion.",
+            help="JSON or TOML file that gives, for joints of the avatar, the joint of the motion or the bone of VMC.",
             show_default="matched by name",
         ),
     ] = None,
@@ -80,16 +90,18 @@ def view(
         raise InputError("--no-open: works only with --web, which is not given")
     asked = Asked(**seen)
     given = {"--frame": frame, "--frames": frames, "--reference": reference, "--device": device, "--motion": motion}
-    given |= {"--mapping": mapping, **{f"--{name.replace('_', '-')}": value for name, value in seen.items()}}
+    given |= {"--mapping": mapping, "--listen": listen, "--clip": clip}
+    given |= {f"--{name.replace('_', '-')}": value for name, value in seen.items()}
     if web:
         from mua.cli.view_web import check_web, serve
 
         check_web({**given, "-o": output, "--turntable": turntable})
-        serve(files, asked, clip=clip, opens=not no_open)
+        address = None if listen is None else parse_listen(listen)
+        serve(files, asked, clip=clip, opens=not no_open, listen=address, mapping=mapping)
         return
     kind = kind_of(output, turntable=turntable)
     check_fitting(kind, output, given)
-    look = look_of(asked, output)
+    look, address = look_of(asked, output), None if listen is None else parse_listen(listen)
     if reference and look.toggles != Toggles():
         raise InputError(f"--show is {asked.show!r}; --reference draws only splats")
     check_inputs(files, output, motion)
@@ -98,7 +110,8 @@ def view(
     if output is None:
         from mua.player.window import show as show_window  # here, because files need no window system
 
-        show_window(source, look, device=device)
+        with listening(address) as receiver:
+            show_window(replace(source, receiver=receiver), look, device=device)
         return
     require_writable(output)
     from mua.cli.view_files import write  # here, so that a wrong name fails at once

@@ -1,6 +1,6 @@
 """What the options of mua-view ask for, in the window and in files alike; checked before anything is loaded."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from dataclasses import KW_ONLY, dataclass
 from pathlib import Path
 from typing import Annotated, Literal
@@ -31,10 +31,12 @@ MEANT = {"window": "the window", "image": "an image", "video": "a video", "turnt
 FITTING: dict[str, tuple[Kind, ...]] = {  # options that do not go with everything
     "--frame": ("window", "image", "turntable"),
     "--frames": ("video",),
+    "--listen": ("window",),
     "--orbit": ("window", "video", "turntable"),
     "--reference": ("image", "video", "turntable"),
 }
-BESIDE = (("--mapping", "--motion"), ("--ipd", "--stereo"))  # options that need another one
+BESIDE = {"--mapping": ("--motion", "--listen"), "--ipd": ("--stereo",)}  # options that need one of others
+INSTEAD = ("--motion", "--clip", "--frame")  # options that say what is played, as --listen does
 CLOSE_UP = 4.0  # times nearer, where a joint is looked at
 
 
@@ -133,13 +135,21 @@ def check_fitting(kind: Kind, output: Path | None, given: Mapping[str, object]) 
             fitting = listed([MEANT[kind] for kind in kinds])
             found = "no -o is given" if output is None else f"-o is {output}, {MEANT[kind]}"
             raise InputError(f"{option}: works only with {fitting}; {found}")
-    for option, other in BESIDE:
-        if option in named and other not in named:
-            raise InputError(f"{option}: works only with {other}, which is not given")
+    check_together(named)
     if {"--reference", "--device"} <= named:
         raise InputError(
             "--device and --reference are both given, but --reference uses no graphics device; expected one of the two"
         )
+
+
+def check_together(named: Set[str]) -> None:
+    """Raises InputError for an option that lacks another one beside it, or has one that says otherwise."""
+    for option, others in BESIDE.items():
+        if option in named and not named & set(others):
+            raise InputError(f"{option}: works only with {' or '.join(others)}, which is not given")
+    for option in INSTEAD:
+        if {option, "--listen"} <= named:
+            raise InputError(f"{option}: works only without --listen, which shows what another program sends")
 
 
 def check_inputs(files: list[Path], output: Path | None, motion: Path | None) -> None:

@@ -30,32 +30,67 @@ def placed(rest: Rest, rotations: Array, source_at: Array, *, rate: float, hones
 
     honest: whether the source's rest pose shows a body, and so how high its feet stand.
     """
-    target, matches = rest.target, rest.matches
+    target = rest.target
     translations = np.tile(target.bind_translations, (len(rotations), 1, 1))
-    turned, at = target.world(rotations, attached(rest, rotations, translations.copy()))
-    scale, leg = _leg_scale(rest)
-    legs = [joint for side in SIDES if (joint := rest.joint(f"{side} thigh")) is not None]
-    hips = legs if len(legs) == 2 else [joint for joint in (rest.joint("hips"),) if joint is not None]
+    hips = hips_of(rest)
     if not hips:
         return translations, ["no hips; it stays in place."]
-    path = source_at[:, [matches.chains[joint][0] for joint in hips]].mean(axis=1)
+    _, at = target.world(rotations, attached(rest, rotations, translations))
+    scale, leg = leg_scale(rest)
+    path = hips_path(rest, source_at)
     pace = _pace(rest, at - at[:, hips].mean(axis=1)[:, None], source_at, path, rate=rate, scale=scale, leg=leg)
     path = path * np.array([pace, scale, pace])
-    mover = _mover(rest)
+    turned, at = target.world(rotations, led(rest, rotations, path))
+    if not _soles(rest):
+        return led(rest, rotations, path - standing(foot_heights(rest, turned, at)) * Y), []
+    lift, notes = _lift(rest, turned, at, source_at if honest else None, scale, leg, rate)
+    return led(rest, rotations, path + lift * Y), notes
+
+
+def hips_of(rest: Rest) -> list[int]:
+    """The joints of the target whose middle its hips are: where the legs begin, else the hips alone; [] without."""
+    legs = [joint for side in SIDES if (joint := rest.joint(f"{side} thigh")) is not None]
+    return legs if len(legs) == 2 else [joint for joint in (rest.joint("hips"),) if joint is not None]
+
+
+def hips_path(rest: Rest, source_at: Array) -> Array:
+    """Where the source's hips are [F, 3], of its joints' places [F, S, 3]."""
+    return np.asarray(source_at[:, [rest.matches.chains[joint][0] for joint in hips_of(rest)]].mean(axis=1))
+
+
+def foot_heights(rest: Rest, turned: Array, at: Array) -> Array:
+    """How high above the floor the feet of the target are, [F, P] metres: as at rest, 0 where it has no legs.
+
+    Legs without feet end on the floor at rest, straight below them.
+    """
+    if soles := _soles(rest):
+        return np.asarray(at[:, soles, 1] - rest.target_at[soles, 1] + floor_of(rest.target_at))
+    floor = min(floor_of(rest.target_at), 0.0)
+    heights = [np.zeros(len(at))]
+    for side in SIDES:
+        joint = next((j for part in ("shin", "thigh") if (j := rest.joint(f"{side} {part}")) is not None), None)
+        if joint is not None:
+            since = rotation.multiply(turned[:, joint], rotation.conjugate(rest.target_turned[joint]))
+            down = (floor - rest.target_at[joint, 1]) * Y
+            ends = at[:, joint, 1] + rotation.rotate(since, np.broadcast_to(down, at[:, joint].shape))[:, 1]
+            heights.append(ends - floor)
+    return np.stack(heights[1:] or heights, axis=1)
+
+
+def _soles(rest: Rest) -> list[int]:
+    return [joint for side in SIDES for part in SOLES if (joint := rest.joint(f"{side} {part}")) is not None]
+
+
+def led(rest: Rest, rotations: Array, path: Array) -> Array:
+    """Local translations [F, T, 3] of the target with its hips on a path [F, 3]."""
+    target, mover = rest.target, _mover(rest)
+    translations = np.tile(target.bind_translations, (len(rotations), 1, 1))
+    turned, at = target.world(rotations, attached(rest, rotations, translations.copy()))
     parent = int(target.parents[mover])
     above = turned[:, parent] if parent >= 0 else np.broadcast_to(IDENTITY, turned[:, 0].shape)
-
-    def moved(shift: Array) -> Array:
-        led = translations.copy()
-        led[:, mover] += rotation.rotate(rotation.conjugate(above), shift)
-        return attached(rest, rotations, led)
-
-    shift = path - at[:, hips].mean(axis=1)
-    turned, at = target.world(rotations, moved(shift))
-    if all(rest.joint(f"{side} {part}") is None for side in SIDES for part in SOLES):
-        return moved(shift + _lift_of_legs(rest, turned, at) * Y), []
-    lift, notes = _lift(rest, at, source_at if honest else None, scale, leg, rate)
-    return moved(shift + lift * Y), notes
+    shift = path - at[:, hips_of(rest)].mean(axis=1)
+    translations[:, mover] += rotation.rotate(rotation.conjugate(above), shift)
+    return attached(rest, rotations, translations)
 
 
 def _pace(rest: Rest, at: Array, source_at: Array, path: Array, *, rate: float, scale: float, leg: float) -> float:
@@ -104,7 +139,7 @@ def attached(rest: Rest, rotations: Array, translations: Array) -> Array:
     return translations
 
 
-def _leg_scale(rest: Rest) -> tuple[float, float]:
+def leg_scale(rest: Rest) -> tuple[float, float]:
     """Target size over source size, and the target's leg in metres: by the legs, else by all matched bones."""
     lengths = np.zeros(2)
     for side in SIDES:
@@ -132,7 +167,7 @@ def _all_bones(rest: Rest) -> Array:
 
 
 def _lift(
-    rest: Rest, at: Array, source_at: Array | None, scale: float, leg: float, rate: float
+    rest: Rest, turned: Array, at: Array, source_at: Array | None, scale: float, leg: float, rate: float
 ) -> tuple[float, list[str]]:
     """Metres by which to raise the target so that standing feet are as high as the source's, and what to say of it.
 
@@ -141,9 +176,8 @@ def _lift(
     stand, the clip's lower foot is taken to stand, unless the whole clip is far above the floor and its feet do not
     step on one level up there.
     """
-    soles = [joint for side in SIDES for part in SOLES if (joint := rest.joint(f"{side} {part}")) is not None]
-    heights = at[:, soles, 1] - rest.target_at[soles, 1]
-    height = standing(heights) + floor_of(rest.target_at)
+    soles, heights = _soles(rest), foot_heights(rest, turned, at)
+    height = standing(heights)
     expected = 0.0
     feet = [rest.matches.chains[joint][0] for joint in soles]
     rise = None if source_at is None else scale * standing(source_at[:, feet, 1] - rest.source_at[feet, 1])
@@ -157,19 +191,6 @@ def _lift(
     if expected > LOWEST * leg:
         notes.append(f"its feet never come nearer to the floor than {expected:.2f} m; the height is kept.")
     return expected - height, notes
-
-
-def _lift_of_legs(rest: Rest, turned: Array, at: Array) -> float:
-    """Metres by which to raise a target without feet so that its legs end on the floor: straight below them at rest."""
-    floor = min(floor_of(rest.target_at), 0.0)
-    heights = []
-    for side in SIDES:
-        joint = next((j for part in ("shin", "thigh") if (j := rest.joint(f"{side} {part}")) is not None), None)
-        if joint is not None:
-            since = rotation.multiply(turned[:, joint], rotation.conjugate(rest.target_turned[joint]))
-            down = (floor - rest.target_at[joint, 1]) * Y
-            heights.append(at[:, joint, 1] + rotation.rotate(since, np.broadcast_to(down, at[:, joint].shape))[:, 1])
-    return floor - standing(np.stack(heights, axis=1)) if heights else 0.0
 
 
 def _level(heights: Array, leg: float) -> bool:

@@ -47,7 +47,7 @@ def retarget(source: SourceMotion, target: Skeleton, matches: Matches, *, rate: 
     clip = resample(source.clip, rate)
     turned, at = source.skeleton.world(clip.rotations, clip.translations)
     calibrations, facing, honest = _calibrations(rest, turned, at, rate)
-    rotations = _local_rotations(rest, calibrations, rotation.multiply(facing, turned))
+    rotations = local_rotations(rest, calibrations, rotation.multiply(facing, turned))
     translations, notes = placed(rest, rotations, rotation.rotate(facing, at), rate=rate, honest=honest)
     notes = [f"{clip.name}: {note}" for note in notes]
     if missing := missing_limbs(source.skeleton, target, matches):
@@ -59,14 +59,19 @@ def retarget(source: SourceMotion, target: Skeleton, matches: Matches, *, rate: 
     return Clip(clip.name, rate, rotations, translations), (*source.notes, *matches.notes, *notes)
 
 
+def calibrations_at_rest(rest: Rest) -> tuple[dict[int, Array], Array]:
+    """C_t by target joint and W [4], where the source's rest pose shows a body."""
+    upright = body_turn(rest)
+    return rest_calibrations(rest, upright), rotation.conjugate(heading_of(upright))
+
+
 def _calibrations(rest: Rest, turned: Array, at: Array, rate: float) -> tuple[dict[int, Array], Array, bool]:
     """C_t by target joint, W [4], and whether they come from the source's rest pose, which then gives heights too."""
-    upright = body_turn(rest)
-    by_rest = rest_calibrations(rest, upright)
+    by_rest, facing = calibrations_at_rest(rest)
     honest = (stands(rest.source_places()) or _both_on_all_fours(rest)) and not _turned_otherwise(rest, turned, at)
     by_pose = {} if honest else posed_calibrations(rest, turned, at, rate)
     if not by_pose:
-        return by_rest, rotation.conjugate(heading_of(upright)), True
+        return by_rest, facing, True
     by_frames = {joint: rotation.conjugate(rest.target_turned[joint]) for joint in rest.matches.chains}
     if not _same_frames(rest, by_frames, by_pose):
         return by_pose, IDENTITY, False
@@ -121,20 +126,23 @@ def _along_bones(rest: Rest, by_frames: dict[int, Array], by_pose: dict[int, Arr
     return found
 
 
-def _local_rotations(rest: Rest, calibrations: Mapping[int, Array], moved: Array) -> Array:
+def local_rotations(rest: Rest, calibrations: Mapping[int, Array], moved: Array) -> Array:
     """Local rotations [F, T, 4] of the target, from the world rotations [F, S, 4] of the source."""
-    target = rest.target
-    turned = np.empty((len(moved), len(target.names), 4))
-    local = np.empty_like(turned)
-    for joint, parent in enumerate(target.parents):
-        above = turned[:, parent] if parent >= 0 else IDENTITY
-        if joint in rest.matches.chains:
-            bound = rotation.multiply(calibrations[joint], rest.target_turned[joint])
-            turned[:, joint] = rotation.multiply(moved[:, rest.matches.chains[joint][1]], bound)
-            local[:, joint] = rotation.normalize(rotation.multiply(rotation.conjugate(above), turned[:, joint]))
-        else:
-            local[:, joint] = target.bind_rotations[joint]
-            turned[:, joint] = rotation.multiply(above, local[:, joint])
+    target, chains = rest.target, rest.matches.chains
+    matched = np.array(sorted(chains), int)
+    local = np.tile(target.bind_rotations, (len(moved), 1, 1))
+    turned = np.empty_like(local)
+    if len(matched):
+        calibrated = np.array([calibrations[joint] for joint in matched])
+        bound = rotation.multiply(calibrated, rest.target_turned[matched])
+        turned[:, matched] = rotation.multiply(moved[:, [chains[joint][1] for joint in matched]], bound)
+    is_matched = np.isin(np.arange(len(target.names)), matched)
+    for joints, parents in target.generations:
+        above = np.where(parents[:, None] < 0, IDENTITY, turned[:, parents])
+        led, free = is_matched[joints], ~is_matched[joints]
+        turned[:, joints[free]] = rotation.multiply(above[:, free], local[:, joints[free]])
+        wanted = rotation.multiply(rotation.conjugate(above[:, led]), turned[:, joints[led]])
+        local[:, joints[led]] = rotation.normalize(wanted)
     for joint, carrier in detached_joints(rest).items():
         since = rotation.multiply(turned[:, carrier], rotation.conjugate(rest.target_turned[carrier]))
         wanted = rotation.multiply(since, rest.target_turned[joint])

@@ -8,9 +8,13 @@ import numpy as np
 from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.errors import InputError
+from mua.live.live import Live
+from mua.live.receiver import Receiver
 from mua.motion.load import counted, load_motions, unique_names
 from mua.pose.clip import Clip
 from mua.pose.resample import resample
+
+LIVE = "live"  # name of the clip that stands for what another program sends
 
 
 def player_clips(
@@ -32,6 +36,30 @@ def player_clips(
     if not avatar.clips:
         raise InputError(f"{file} holds no clips; mua-view needs one to pose the avatar")
     return [resample(clip, rate) for clip in avatar.clips], ()
+
+
+def live_of(
+    avatar: Avatar,
+    file: Path,  # the avatar's file, for error messages
+    receiver: Receiver,
+    mapping: Mapping[str, str] | None,
+) -> Live:
+    """An avatar that follows what another program sends.
+
+    Errors: InputError where no bone moves an arm or leg, or `mapping` names a joint or bone there is none of.
+    """
+    try:
+        return Live(
+            receiver.newest, avatar.rig.skeleton, avatar.encoding, mapping=mapping, expressions=avatar.expressions
+        )
+    except InputError as error:
+        raise error.of(file) from error
+
+
+def stance(live: Live, rate: float) -> Clip:
+    """What stands for a live pose among clips: one frame, as the avatar stands before a sender begins."""
+    pose = live.at_ease.pose
+    return Clip(LIVE, rate, pose.rotations[None], pose.translations[None])
 
 
 def require_frame(clip: Clip, frame: int) -> int:

@@ -11,6 +11,7 @@ from mua.player.toggles import Toggles
 WIDTH = 300  # logical pixels
 SLOWEST, FASTEST = 0.1, 2.0  # factors of the clip's own speed
 WARNING = imgui.ImVec4(1.0, 0.55, 0.4, 1.0)
+VISIBLE = 0.01  # weight of an expression that is listed
 SHOWN = {
     "splats": "Splats",
     "geometry": "Detailed geometry",
@@ -66,6 +67,7 @@ def draw_panel(session: Session, *, rate: float) -> None:
     imgui.push_item_width(-70)
     _sources(session)
     _transport(session)
+    _live(session)
     _shown(session)
     _times(session, rate)
     _keys()
@@ -102,6 +104,18 @@ def _transport(session: Session) -> None:
     if changed:
         session.step(min(max(index, 0), last) - session.index)
     _, session.speed = imgui.slider_float("speed", session.speed, SLOWEST, FASTEST, "%.2f x")
+
+
+def _live(session: Session) -> None:
+    """What comes from another program, where that is shown."""
+    if session.receiver is None or session.live is None:
+        return
+    imgui.separator()
+    imgui.text_disabled(f"listens on {session.receiver.address}")
+    imgui.text_wrapped(session.receiver.figures)
+    for name, weight in session.live.now.expressions.items():
+        if weight >= VISIBLE:
+            imgui.progress_bar(weight, (0, 0), name)
 
 
 def _shown(session: Session) -> None:

@@ -3,20 +3,24 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from time import monotonic
 
 import numpy as np
 import wgpu
 
 from mua.arrays import Array
+from mua.asset.avatar import Avatar
 from mua.avatar.camera import EYE_DISTANCE, Camera
 from mua.errors import InputError
 from mua.gpu import Commands, Device
+from mua.live.live import Live
+from mua.live.receiver import Receiver
 from mua.motion.facing import front_of
 from mua.player.buffers import AvatarBuffers
 from mua.player.focus import find_focus
 from mua.player.frame import AvatarFrame
 from mua.player.levels import AUTO, Levels, Wanted
-from mua.player.motion import named_clip, player_clips, require_frame, with_weights
+from mua.player.motion import live_of, named_clip, player_clips, require_frame, stance, with_weights
 from mua.player.overlays import ground_height
 from mua.player.scene import CLEAR, Scene
 from mua.player.schedule import DecodeSchedule, Moment
@@ -25,6 +29,7 @@ from mua.player.source import Source
 from mua.player.splats import SplatFrame
 from mua.player.viewpoint import Viewpoint, framing
 from mua.pose.clip import Clip
+from mua.pose.skeleton import Pose
 
 SMOOTHING = 0.1  # share of the newest frame in the times on screen
 ROUND = np.linspace(0, 2 * np.pi, 16, endpoint=False)  # radians at which a figure is framed, so that all its sides fit
@@ -36,7 +41,9 @@ class Stage:
     def __init__(self, device: Device, source: Source, file: Path, look: Look, *, color_format: str) -> None:
         """Raise InputError where the file is broken or too large, the motion does not fit or a joint is missing."""
         avatar = AvatarBuffers(device, file)
-        self.clips, self.notes = player_clips(avatar.avatar, file, motion=source.motion, mapping=source.mapping)
+        receiver = source.receiver
+        self.live = None if receiver is None else live_of(avatar.avatar, file, receiver, source.mapping)
+        self.clips, self.notes = _clips(source, avatar.avatar, file, self.live)
         self.frame = SplatFrame(device, [AvatarFrame(device, avatar)])
         self.schedule = DecodeSchedule(self.frame.avatars[0])
         background = CLEAR if look.background is None else (*look.background, 1.0)
@@ -57,6 +64,14 @@ class Stage:
     def front(self, clip: Clip) -> float:
         """Azimuth of the figure's front at the start of a clip, radians."""
         return front_of(self.rig.skeleton, clip.rotations[0], clip.translations[0])
+
+
+def _clips(source: Source, avatar: Avatar, file: Path, live: Live | None) -> tuple[list[Clip], tuple[str, ...]]:
+    """The clips to choose from, first the one that stands for a live pose, and notes."""
+    if live is None:
+        return player_clips(avatar, file, motion=source.motion, mapping=source.mapping)
+    clips, notes = player_clips(avatar, file, motion=None, mapping=None) if avatar.clips else ([], ())
+    return [stance(live, avatar.encoding.rate), *clips], notes
 
 
 class Session:
@@ -101,10 +116,20 @@ class Session:
         return self._clip
 
     @property
+    def live(self) -> Live | None:
+        """What another program sends, where that is shown; None where a clip is."""
+        return self._stage.live if self._clip is self._stage.clips[0] else None
+
+    @property
+    def receiver(self) -> Receiver | None:
+        """The port that is listened on; None where nothing is."""
+        return self._source.receiver
+
+    @property
     def expressions(self) -> dict[str, float]:
         """The avatar's expressions with the weights that are shown."""
-        names, own = self._stage.expressions, self._clip.pose(self.index).expressions
-        shown = with_weights(names, own, self.weights)
+        names = self._stage.expressions
+        shown = with_weights(names, self._pose_shown.expressions, self.weights)
         return dict.fromkeys(names, 0.0) if shown is None else dict(zip(names, shown.tolist(), strict=True))
 
     @property
@@ -164,6 +189,8 @@ class Session:
         """Play on for this time, in a loop."""
         self._step = seconds * self.speed * self._clip.rate
         if self.playing:
+            if self.live is not None:
+                self.live.advance(monotonic())
             self.time = (self.time + self._step) % len(self._clip)
             if self.view is not None:
                 self.view = replace(self.view, azimuth=self.view.azimuth + self.turning * seconds)
@@ -191,19 +218,26 @@ class Session:
         self._stage.frame.sort(commands, cameras)
         commands.submit()
         self._stage.scene.draw(target, cameras, self.toggles)
+        if self.live is not None and self.receiver is not None:
+            self.receiver.latency.drawn(self.live.arrived, monotonic())
         if self.timed and self.can_time:
             self._note(commands.milliseconds())
 
     def _pose(self, commands: Commands, cameras: Sequence[Camera]) -> None:
         """Append the dispatches for the frame that is due, and a part of decoding the one after it."""
-        stage, clip, index = self._stage, self._clip, self.index
-        rotations, translations = clip.rotations[index], clip.translations[index]
+        stage, clip, live, pose = self._stage, self._clip, self.live, self._pose_shown
+        rotations, translations = pose.rotations, pose.translations
         level = 0 if self.toggles.geometry else stage.levels.choose(rotations, translations, cameras)
         named = tuple(self.weights.items())
-        due, following = (clip.name, index, named), (clip.name, self._following(), named)
+        frames = (self.index, self._following()) if live is None else (live.moment, live.moment)
+        due, following = ((clip.name, frame, named) for frame in frames)
         if stage.schedule.record(commands, due, following, self._window, level=level):
             stage.frame.avatars[0].repose(commands, rotations, translations)
             stage.scene.pose(rotations, translations, ground=stage.ground(clip))
+
+    @property
+    def _pose_shown(self) -> Pose:
+        return self._clip.pose(self.index) if self.live is None else self.live.now.pose
 
     def _following(self) -> int:
         """The frame to decode ahead; this one where the clip rests or skips frames, or what is shown must be exact."""
@@ -214,9 +248,12 @@ class Session:
 
     def _window(self, moment: Moment) -> tuple[Array, Array, Array | None]:
         _, index, named = moment
-        window, pose = self._stage.encoding.frames(index), self._clip.pose(index)
-        weights = with_weights(self._stage.expressions, pose.expressions, dict(named))
-        return self._clip.rotations[window], self._clip.translations[window], weights
+        if self.live is not None:
+            (rotations, translations), pose = self.live.window(), self.live.now.pose
+        else:
+            window, pose = self._stage.encoding.frames(index), self._clip.pose(index)
+            rotations, translations = self._clip.rotations[window], self._clip.translations[window]
+        return rotations, translations, with_weights(self._stage.expressions, pose.expressions, dict(named))
 
     def _load(self, file: Path) -> Stage:
         if file not in self._stages:
@@ -225,9 +262,10 @@ class Session:
 
     def _followed(self) -> Array:
         """The point that the view follows, [3] metres: the root at its first height, or the focus."""
-        skeleton, clip, focus = self._stage.rig.skeleton, self._clip, self._stage.focus
-        frames = [self.index, 0]
-        rotations, translations = clip.rotations[frames], clip.translations[frames]
+        skeleton, focus = self._stage.rig.skeleton, self._stage.focus
+        shown, first = self._pose_shown, self._clip.pose(0)
+        rotations = np.stack([shown.rotations, first.rotations])
+        translations = np.stack([shown.translations, first.translations])
         if focus is not None:
             now, start = focus.places(skeleton, rotations, translations)
             return np.asarray(now if self.follow else start)

@@ -4,6 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from mua.live.receiver import Receiver
+
 
 @dataclass(frozen=True)
 class Source:
@@ -14,3 +16,4 @@ class Source:
     mapping: Mapping[str, str] | None = None  # avatar's joint to joint of the motion
     clip: str | None = None  # clip to begin with, the first if None
     frame: int | None = None  # frame to pause at; None: played from the start
+    receiver: Receiver | None = None  # what another program sends, shown first where there is one

@@ -47,11 +47,24 @@ class Skeleton:
         _, places = self.world(self.bind_rotations, self.bind_translations)
         return float(np.ptp(places, axis=0).max()) or 1.0
 
+    @cached_property
+    def generations(self) -> list[tuple[Array, Array]]:
+        """Joints with as many others above them, and the parents of these: [n] each, those without parent first."""
+        depth = np.zeros(len(self.parents), int)
+        for joint, parent in enumerate(self.parents):
+            depth[joint] = depth[parent] + 1 if parent >= 0 else 0
+        levels = [np.flatnonzero(depth == level) for level in range(depth.max(initial=-1) + 1)]
+        return [(joints, self.parents[joints]) for joints in levels]
+
     def ancestors(self, joint: int) -> list[int]:
         """The joints above one, nearest first."""
-        found = []
-        while (joint := int(self.parents[joint])) >= 0:
-            found.append(joint)
+        return list(self._ancestors[joint])
+
+    @cached_property
+    def _ancestors(self) -> list[list[int]]:
+        found: list[list[int]] = []
+        for parent in self.parents.tolist():  # parents come before children
+            found.append([parent, *found[parent]] if parent >= 0 else [])
         return found
 
     def with_root(
@@ -71,13 +84,14 @@ class Skeleton:
         """Joint-to-world rotations [..., J, 4] and positions [..., J, 3] (forward kinematics)."""
         turned = np.empty(rotations.shape)
         placed = np.empty((*rotations.shape[:-1], 3))
-        for j, parent in enumerate(self.parents):
-            local = translations[..., j, :]
-            if parent < 0:
-                turned[..., j, :], placed[..., j, :] = rotations[..., j, :], local
+        for joints, parents in self.generations:
+            local, offset = rotations[..., joints, :], translations[..., joints, :]
+            if (parents < 0).all():
+                turned[..., joints, :], placed[..., joints, :] = local, offset
                 continue
-            turned[..., j, :] = rotation.multiply(turned[..., parent, :], rotations[..., j, :])
-            placed[..., j, :] = placed[..., parent, :] + rotation.rotate(turned[..., parent, :], local)
+            above = turned[..., parents, :]
+            turned[..., joints, :] = rotation.multiply(above, local)
+            placed[..., joints, :] = placed[..., parents, :] + rotation.rotate(above, offset)
         return turned, placed
 
     def skinning(

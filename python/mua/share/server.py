@@ -4,8 +4,8 @@ Only the paths of the site are there: no directory is listed, and no other file 
 """
 
 import re
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from io import BufferedIOBase, BytesIO
@@ -14,6 +14,7 @@ from typing import IO
 from urllib.parse import unquote, urlsplit
 
 from mua.share.site import PAGE, Content, Site
+from mua.share.websocket import WebSocket, accept, asks_for_socket
 
 LOOPBACK = "127.0.0.1"
 TYPES = {
@@ -31,9 +32,12 @@ RANGE = re.compile(r"bytes=(\d*)-(\d*)")
 
 
 @contextmanager
-def serving(site: Site) -> Iterator[ThreadingHTTPServer]:
+def serving(
+    site: Site,
+    sockets: Mapping[str, Callable[[WebSocket], None]] | None = None,  # by path: what to do with a WebSocket
+) -> Iterator[ThreadingHTTPServer]:
     """A server on a free port of the loopback address; `serve_forever` runs it, and it is closed at the end."""
-    handler = type("Handler", (_Handler,), {"site": site})
+    handler = type("Handler", (_Handler,), {"site": site, "sockets": sockets or {}})
     server = ThreadingHTTPServer((LOOPBACK, 0), handler)
     server.daemon_threads = True  # a browser that keeps its connection delays nobody
     try:
@@ -54,9 +58,13 @@ class _Handler(BaseHTTPRequestHandler):
     server_version, sys_version = "mua", ""
     disable_nagle_algorithm = True  # a body would wait until the browser has confirmed the header before it
     site: Site
+    sockets: Mapping[str, Callable[[WebSocket], None]]
 
     def do_GET(self) -> None:
-        self._answer(body=True)
+        if asks_for_socket(self.headers):
+            self._begin_socket()
+        else:
+            self._answer(body=True)
 
     def do_HEAD(self) -> None:
         self._answer(body=False)
@@ -64,12 +72,36 @@ class _Handler(BaseHTTPRequestHandler):
     def log_message(self, format: str, *arguments: object) -> None:
         """Log nothing: the page reports failures."""
 
+    @property
+    def _named(self) -> str:
+        return unquote(urlsplit(self.path).path).removeprefix("/") or PAGE
+
+    @property
+    def _hosts(self) -> list[str]:
+        """The names under which a browser on this machine asks."""
+        return [f"{name}:{self.connection.getsockname()[1]}" for name in (LOOPBACK, "localhost")]
+
+    def _begin_socket(self) -> None:
+        """Hand over the connection, to pages of this server alone: any other may ask for one too."""
+        self.close_connection = True
+        serve = self.sockets.get(self._named)
+        if serve is None or self.headers.get("Origin") not in [f"http://{host}" for host in self._hosts]:
+            self._refuse(HTTPStatus.FORBIDDEN)
+            return
+        self.send_response(HTTPStatus.SWITCHING_PROTOCOLS)
+        answer = {"Upgrade": "websocket", "Connection": "Upgrade"}
+        for name, value in {**answer, "Sec-WebSocket-Accept": accept(self.headers["Sec-WebSocket-Key"])}.items():
+            self.send_header(name, value)
+        self.end_headers()
+        with suppress(OSError):  # the browser went away
+            serve(WebSocket(self.connection))
+
     def _answer(self, *, body: bool) -> None:
         """Send the file at a path, or the requested part of it."""
-        path = unquote(urlsplit(self.path).path).removeprefix("/") or PAGE
-        content, port = self.site.get(path), self.connection.getsockname()[1]
+        path = self._named
+        content = self.site.get(path)
         # Another site whose name leads to this address must not read what is served here.
-        if self.headers.get("Host") not in [f"{name}:{port}" for name in (LOOPBACK, "localhost")]:
+        if self.headers.get("Host") not in self._hosts:
             self._refuse(HTTPStatus.MISDIRECTED_REQUEST)
             return
         if content is None or (isinstance(content, Path) and not content.is_file()):

@@ -14,6 +14,7 @@ SERVED = (".js", ".css", ".wgsl", ".svg")  # ending of the player's files; other
 POSTER = "poster.png"
 SCRIPT = '<script type="module"'  # how the page's script begins
 WORKER = "worker.js"  # the root of a module graph of its own
+BRIDGE = "bridge.js"  # of pages that a program of this machine feeds
 ELEMENT = "<mua-avatar "
 UNSAFE = re.compile(r"[^\w.-]+")  # characters of a file name that some web hosts do not take
 
@@ -32,8 +33,8 @@ class Shown:
 
 
 def player_files() -> dict[str, Path]:
-    """The player's own files but its page, by path."""
-    paths = [path for path in sorted(PLAYER.rglob("*")) if path.is_file() and path.suffix in SERVED]
+    """The player's own files but its page and BRIDGE, by path."""
+    paths = [path for path in sorted(PLAYER.rglob("*")) if path.suffix in SERVED and path.name != BRIDGE]
     return {path.relative_to(PLAYER).as_posix(): path for path in paths}
 
 

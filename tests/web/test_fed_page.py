@@ -1,0 +1,55 @@
+"""A page that `mua-view --web --listen` serves, in a headless browser: packets of VMC become poses of its avatar."""
+
+import socket
+import time
+from threading import Thread
+
+import numpy as np
+from people import person
+from vmc_senders import bundle
+from web.browser import Browser
+
+from mua.live.live import EASING, Live
+from mua.live.receiver import Address, Receiver
+from mua.pose.encoding import PoseEncoding
+from mua.share.live import PATH, Feed, live_site
+from mua.share.server import address, serving
+from mua.share.site import Shown, player_site
+
+KEEPING = """
+window.poses = [];
+const avatar = { setPose: (pose) => window.poses.push(pose) };
+Object.defineProperty(document.querySelector("mua-avatar"), "avatars", { value: [avatar] });
+"""
+
+
+def test_packets_become_poses_of_the_page_and_their_latency_is_measured(browser: Browser) -> None:
+    turned = bundle(
+        ("/VMC/Ext/Bone/Pos", "Head", 0.0, 0.1, 0.0, 0.0, 0.6, 0.0, 0.8),
+        ("/VMC/Ext/Blend/Val", "Joy", 0.5),
+        ("/VMC/Ext/Blend/Apply",),
+    )
+    target = person()
+    with Receiver(Address(0)) as receiver:
+        live = Live(receiver.newest, target, PoseEncoding(joints=(1,), rate=30.0), expressions=("happy",))
+        feed = Feed([live], receiver.latency)
+        site = live_site(player_site([], Shown("live", more={"live": PATH})))
+        with serving(site, {PATH: feed.feed}) as server:
+            thread = Thread(target=server.serve_forever, args=(0.02,))
+            thread.start()
+            page = browser.page(address(server))
+            page.evaluate(f"(() => {{{KEEPING}}})()")
+            with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as program:
+                end = time.monotonic() + 2 * EASING
+                while time.monotonic() < end or not page.evaluate("window.poses.at(-1)?.expressions[0] === 0.5"):
+                    program.sendto(turned, ("127.0.0.1", receiver.address.port))
+                    time.sleep(0.01)
+            pose = page.evaluate("window.poses.at(-1)")
+            assert page.reported["errors"] == []
+            page.close()
+            server.shutdown()
+            thread.join()
+        head = target.names.index("Head")
+        np.testing.assert_allclose(np.abs(pose["rotations"][4 * head : 4 * head + 4]), [0, 0.6, 0, 0.8], atol=1e-5)
+        assert "from packet to picture" in receiver.figures
+        print(receiver.figures)
