@@ -42,8 +42,7 @@ namespace Mua.Format
             avatar.Appearance = model.Appearance(tree.Child("appearance"), count, inputs, side);
             Magnitude.Require(avatar);
             avatar.Expressions = ExpressionDecoder.Expressions(tree.Child("expressions"), vertices, tensors);
-            int expressions = avatar.Expressions == null ? 0 : avatar.Expressions.Names.Length;
-            avatar.Clips = Clips(tree.Children("clips"), avatar.Skeleton, expressions, avatar.Encoding.Rate);
+            avatar.Clips = Clips(tree.Children("clips"), avatar.Skeleton, avatar.ExpressionCount, avatar.Encoding.Rate);
             avatar.Bounds = Bounds(tree.Child("bounds"));
             avatar.Thumbnail = Thumbnail(tree.Block("thumbnail"));
             avatar.Surface = rig.Surface(tree.Child("surface"), content, avatar.Texels);

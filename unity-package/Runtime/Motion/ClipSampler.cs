@@ -85,16 +85,22 @@ namespace Mua.Motion
         /// <summary>Weights [E] of expressions of one frame; all 0 where the clip has none.</summary>
         public void ReadExpressions(int index, Span<float> weights)
         {
+            for (int i = 0; i < weights.Length; i++)
+            {
+                weights[i] = ReadExpression(index, i);
+            }
+        }
+
+        /// <summary>Weight of one expression of one frame.</summary>
+        public float ReadExpression(int index, int expression)
+        {
             if (clip.Expressions == null)
             {
-                weights.Clear();
-                return;
+                return 0;
             }
             Moment(index, out int before, out int after, out double t);
-            for (int i = 0, count = weights.Length; i < count; i++)
-            {
-                weights[i] = (float)Number(clip.Expressions, before * count + i, after * count + i, t);
-            }
+            int count = clip.Expressions.Shape[1];
+            return (float)Number(clip.Expressions, before * count + expression, after * count + expression, t);
         }
 
         /// <summary>The clip's frames before and after one of ours, and how far it lies between them.</summary>
