@@ -20,7 +20,7 @@ def program(csharp: CSharp) -> Path:
     return csharp.build([RUNTIME / "Format", PROGRAMS / "FormatProgram.cs"])
 
 
-CLIP_TENSORS = ("rotations", "translation", "translations")
+CLIP_TENSORS = ("rotations", "translation", "translations", "expressions")
 
 
 def barycentrics_of(tree: Tree, avatar: Avatar) -> Array:
@@ -56,6 +56,8 @@ def values(tree: Tree) -> dict[str, tuple[str, bytes]]:
         "encoding.window": (encoding.window, encoding.remove_heading),
         "wavelet.levels": wavelet.levels,
     }
+    if rig.expressions:
+        integers |= {f"expressions.{key}": getattr(rig.expressions, key) for key in ("starts", "vertices")}
     if avatar.surface:
         integers["surface.triangles"] = avatar.surface.triangles(rig.texels)
     floats: dict[str, Any] = {
@@ -75,6 +77,8 @@ def values(tree: Tree) -> dict[str, tuple[str, bytes]]:
         **branch_values("geometry", avatar.geometry),
         **branch_values("appearance", avatar.appearance),
     }
+    if rig.expressions:
+        floats["expressions.offsets"] = rig.expressions.offsets
     clips: dict[str, Any] = {f"clips.{i}.rate": clip.rate for i, clip in enumerate(avatar.clips)}
     for i, clip in enumerate(tree["clips"]):  # as stored: rotations not yet of unit length
         clips |= {f"clips.{i}.{key}": stored(clip[key], key) for key in CLIP_TENSORS if key in clip}
@@ -92,6 +96,7 @@ def values(tree: Tree) -> dict[str, tuple[str, bytes]]:
         "wavelet.name": wavelet.name,
         "skeleton.names": "\n".join(skeleton.names),
         **{f"clips.{i}.name": clip.name for i, clip in enumerate(avatar.clips)},
+        **({"expressions.names": "\n".join(rig.expressions.names)} if rig.expressions else {}),
     }
     return {
         **{name: ("i4", np.asarray(value, "<i4").tobytes()) for name, value in integers.items()},

@@ -8,8 +8,8 @@ import pytest
 from csharp import RUNTIME, CSharp
 from damaged import DAMAGED
 from format_program import values
-from malformed import MALFORMED, malformed
-from synthetic_avatar import sparse_avatar, synthetic_avatar, with_surface
+from malformed import EXPRESSIVE, MALFORMED, malformed
+from synthetic_avatar import sparse_avatar, synthetic_avatar, with_expressions, with_surface
 from unpackable import UNPACKABLE
 
 from mua.asset.flatbuffer import FormatError
@@ -18,6 +18,7 @@ from mua.asset.tensors import Storage
 from mua.asset.write import encode
 
 GOLDEN = Path(__file__).parents[1] / "golden" / "synthetic.muaavatar"
+KEPT = ("packed", "expressions")
 CUTS = 211  # every so many bytes both readers are asked, which the Python reader can do in a second
 
 
@@ -51,12 +52,13 @@ def test_format_knows_no_engine(csharp: CSharp) -> None:
     csharp.build([RUNTIME / "Format"], library=True)
 
 
-@pytest.mark.parametrize("storage", ["golden", "golden packed", "f32", "f16", "i8", "packed"])
+@pytest.mark.parametrize("storage", ["golden", "golden packed", "golden expressions", "f32", "f16", "i8", "packed"])
 def test_values_are_those_of_the_python_reader(
     csharp: CSharp, program: Path, tmp_path: Path, storage: Storage | str
 ) -> None:
-    kept = {"golden": GOLDEN, "golden packed": GOLDEN.with_name("packed.muaavatar")}
-    sound = kept[storage].read_bytes() if storage in kept else encode(sparse_avatar(2), storage=storage)  # type: ignore
+    kept = {"golden": GOLDEN} | {f"golden {name}": GOLDEN.with_name(f"{name}.muaavatar") for name in KEPT}
+    made = with_expressions(sparse_avatar(2))
+    sound = kept[storage].read_bytes() if storage in kept else encode(made, storage=storage)  # type: ignore
     [path] = write_all(tmp_path, [sound])
     expected = values(parse_checked(sound))
     found = {}
@@ -99,7 +101,9 @@ def test_malformed_files_get_the_same_code_and_field(
     files = [malformed(content, edit) for _, _, edit in MALFORMED] + [damage(content) for _, _, damage in DAMAGED]
     network = encode(with_surface(synthetic_avatar()), storage="packed")
     files += [malformed(network, edit) for _, _, edit in UNPACKABLE]
-    expected = [(code, field) for code, field, _ in [*MALFORMED, *DAMAGED, *UNPACKABLE]]
+    face = encode(with_expressions(synthetic_avatar()), storage="f16")
+    files += [malformed(face, edit) for _, _, edit in EXPRESSIVE]
+    expected = [(code, field) for code, field, _ in [*MALFORMED, *DAMAGED, *UNPACKABLE, *EXPRESSIVE]]
     assert csharp_answers(csharp, program, write_all(tmp_path, files)) == expected
 
 

@@ -1,22 +1,27 @@
 """Levels of detail in C# are those of Python, and chosen alike."""
 
 import json
+from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from csharp import PROGRAMS, ROOT, CSharp
-from synthetic_avatar import empty_avatar, sparse_avatar, synthetic_avatar
+from synthetic_avatar import empty_avatar, sparse_avatar, synthetic_avatar, with_expressions
 
+from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.asset.read import read
 from mua.asset.tensors import Storage
 from mua.asset.write import write
 from mua.avatar.coarser import coarsest, texel_length
+from mua.kernels.expressions import by_vertex, reach_of
 from mua.kernels.inverse_dwt import texel_tiles, upsampling_taps
 from mua.kernels.splat_project import pack_texels
+from mua.player.buffers import NO_EXPRESSIONS
 
 CASES = json.loads((ROOT / "tests" / "golden" / "level_choice.json").read_text())
 TYPES = {"texels": "<i4", "triangles": "<i4", "barycentrics": "<f4", "geometry": "<f4", "appearance": "<f4"}
@@ -43,6 +48,11 @@ def test_rotations_of_either_sign_are_kept_apart_as_in_python(csharp: CSharp, pr
     assert_levels_alike(csharp, program, tmp_path / "a.muaavatar", turned, "f32")
 
 
+def test_what_expressions_reach_is_that_of_python(csharp: CSharp, program: Path, tmp_path: Path) -> None:
+    for avatar in (sparse_avatar(3), empty_avatar()):
+        assert_levels_alike(csharp, program, tmp_path / "a.muaavatar", with_expressions(avatar), "f32")
+
+
 def test_levels_without_texels_are_those_of_python(csharp: CSharp, program: Path, tmp_path: Path) -> None:
     assert_levels_alike(csharp, program, tmp_path / "a.muaavatar", empty_avatar(), "f32")
 
@@ -62,6 +72,13 @@ def assert_levels_alike(csharp: CSharp, program: Path, path: Path, avatar: Avata
     avatar = read(path)
     printed = iter(csharp.run(program, path).splitlines())
     assert float(next(printed).split()[1]) == pytest.approx(texel_length(avatar), rel=1e-12)
+    held = avatar.rig.expressions or NO_EXPRESSIONS
+    targets = by_vertex(held.starts, held.vertices, held.offsets)
+    for name in ("vertices", "starts", "expressions", "offsets"):
+        values = getattr(targets, name)
+        assert_uploaded(printed, values.astype("<f4" if name == "offsets" else "<u4"))
+    reach = partial(reach_of, targets.vertices, avatar.rig.mesh.faces)
+    assert_uploaded(printed, reach(avatar.rig.texels.triangles).triangles)
     for number in range(coarsest(avatar) + 1):
         level = avatar.at_level(number)
         texels = level.rig.texels
@@ -84,8 +101,15 @@ def assert_levels_alike(csharp: CSharp, program: Path, path: Path, avatar: Avata
         places = pack_texels(texels.triangles, texels.barycentrics, texels.one_sided).ravel().astype(np.int64)
         apart = np.abs(packed - places)  # means of barycentrics may round to another step
         assert number or not apart.any()
+        assert_uploaded(printed, reach(texels.triangles).texels)
         assert ((apart == 0) | (np.arange(len(apart)) % 2 == 1) & np.isin(apart, [1, 1 << 16, (1 << 16) + 1])).all()
     assert list(printed) == []
+
+
+def assert_uploaded(printed: Iterator[str], expected: Array) -> None:
+    word, _, digits = next(printed).partition(" ")
+    assert word == "uploaded"
+    np.testing.assert_array_equal(np.frombuffer(bytes.fromhex(digits), expected.dtype), expected.ravel())
 
 
 @pytest.mark.parametrize("coarser", [0, 1, 2])

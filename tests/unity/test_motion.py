@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from csharp import PROGRAMS, RUNTIME, CSharp
-from synthetic_avatar import synthetic_avatar
+from synthetic_avatar import synthetic_avatar, with_expressions
 
 from mua import rotation
 from mua.arrays import Array
@@ -120,6 +120,10 @@ CASES = {
         avatar_of(remove_heading=True, window=3, rate=24, clips=[(24, 60)], reach=0.1, roam=50),
         "f32",
     ),
+    "a face": (
+        with_expressions(avatar_of(remove_heading=True, window=2, rate=24, clips=[(24, 5), (30, 11), (7, 4)])),
+        "f16",
+    ),
     "longest window": (avatar_of(remove_heading=True, window=16, rate=24, clips=[(24, 20)]), "f32"),
 }
 
@@ -162,7 +166,7 @@ def play(csharp: CSharp, program: Path, path: Path, seconds: Sequence[float] = S
         if name in ("frames", "at", "allocated"):
             found[name].append(int(value))
         else:
-            kind = "<f4" if name in ("components", "skinning") else "<f8"
+            kind = "<f4" if name in ("components", "expressions", "skinning") else "<f8"
             found[name].append(np.frombuffer(bytes.fromhex(value), kind))
     return found
 
@@ -175,6 +179,7 @@ def expected_numbers(avatar: Avatar, clip: Clip) -> dict[str, Array]:
     descriptors = describe(skeleton, encoding, clip.rotations, clip.translations)
     components, outside = read_components(avatar.components, descriptors)
     return {
+        "expressions": np.zeros((len(clip), 0)) if clip.expressions is None else clip.expressions,
         "rotations": clip.rotations[windows],
         "translations": clip.translations[windows],
         "components": components,

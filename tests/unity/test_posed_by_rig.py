@@ -10,5 +10,5 @@ def test_an_avatar_takes_a_rigs_place_and_gives_it_back(csharp: CSharp) -> None:
     sources = [*assemblies()["Mua.Samples.PosedByRig"].sources(), PROGRAMS / "PosedByRigProgram.cs"]
     printed = csharp.run(csharp.build(sources, name="PosedByRigProgram", references=references))
     assert dict(line.split("\t") for line in printed.splitlines()) == dict.fromkeys(
-        ("posed", "hidden", "follows", "released", "quiet"), "True"
+        ("posed", "hidden", "head", "follows", "released", "quiet"), "True"
     )

@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 
@@ -11,7 +11,7 @@ import pytest
 from csharp import ROOT, CSharp
 from frame_bounds import DECODE_ORDER, FRAME_ORDER, HALVES
 from replay import replay
-from synthetic_avatar import synthetic_avatar
+from synthetic_avatar import synthetic_avatar, with_expressions
 
 from mua.arrays import Array
 from mua.asset import write
@@ -45,7 +45,8 @@ def play(csharp: CSharp, component_program: Path, device: Device, tmp_path_facto
     @cache
     def played(story: str) -> tuple[Shown, Shown]:
         file = tmp_path_factory.mktemp(story) / "first.muaavatar"
-        write(file, synthetic_avatar(1), storage="f16")
+        avatar = synthetic_avatar(1)
+        write(file, replace(with_expressions(avatar), clips=avatar.clips), storage="f16")
         printed = csharp.run(component_program, ROOT / "ComputeShaders", story, file)
         reported = [line.split("\t", 1) for line in printed.splitlines()]
         assert ["alive", "0"] in reported
@@ -156,6 +157,15 @@ def test_a_rig_is_shown_one_displayed_frame_late(play: Play) -> None:
     assert [alike(*pair) for pair in late] == [True] * (FRAMES - 1)
     assert spread.outside[1:] == at_once.outside[:-1]
     assert max(spread.dispatches[1:]) == POSED + max(HALVES)
+
+
+def test_a_face_that_moves_in_every_displayed_frame_is_decoded_at_the_avatars_rate(play: Play) -> None:
+    """Shown one displayed frame late, as no frame decodes all."""
+    spread, at_once = play("SpreadsFace")
+    assert FRAMES // 3 - 1 <= changes(at_once) <= FRAMES // 3 + 1
+    late = zip(spread.kept[2:], at_once.kept[1:], strict=False)
+    assert [alike(*pair) for pair in late] == [True] * (FRAMES - 2)
+    assert max(spread.dispatches[1:]) == POSED + HALVES[1] + 3 < POSED + len(DECODE_ORDER)
 
 
 def test_a_rig_that_nobody_saw_for_a_while_shows_its_pose_of_now(play: Play) -> None:

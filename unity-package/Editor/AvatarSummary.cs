@@ -16,7 +16,7 @@ namespace Mua.Editor
         private static readonly string[] Parts =
         {
             "skeleton", "encoding", "template", "texels", "coarse", "geometry", "appearance", "clips", "thumbnail",
-            "surface",
+            "surface", "expressions",
         };
 
         /// <summary>The tables of `avatar`.</summary>
@@ -61,6 +61,9 @@ namespace Mua.Editor
                 Format(
                     "{0} vertices, {1} triangles, {2} PCA components", avatar.Coarse.Mean.Shape[0],
                     avatar.Template.Faces.Shape[0], avatar.Coarse.Basis.Shape[0]));
+            string[] expressions = avatar.Expressions == null ? new string[0] : avatar.Expressions.Names;
+            string names = string.Join(", ", expressions);
+            Row(text, "expressions", expressions.Length == 0 ? "none" : expressions.Length + ": " + names);
             int size = avatar.Texels.Size;
             Row(text, "texels", Format("{0} of {1} x {1}", avatar.Texels.Count, size));
             Row(text, "wavelet", Format("{0}, {1} levels", avatar.Wavelet.Name, avatar.Wavelet.Levels));

@@ -13,6 +13,7 @@ namespace Mua
     {
         private readonly BufferSet buffers = new BufferSet();
         private readonly List<Upload> uploads = new List<Upload>();
+        private readonly ExpressionTargets targets;
         private readonly Upload recLo, recHi, skinIndices, skinWeights, faces;
         private int filled; // uploads
         private long sent, total; // bytes
@@ -29,6 +30,8 @@ namespace Mua
             skinIndices = Add(Stored(avatar.Template.SkinIndices, "template.skin_indices"));
             skinWeights = Add(new Upload("template.skin_weights", avatar.Template.SkinWeights.ToFloats(), sizeof(float)));
             faces = Add(Stored(avatar.Template.Faces, "template.faces"));
+            targets = new ExpressionTargets(avatar);
+            Expressions = new ExpressionBuffers(targets, Add);
             TexelLength = avatar.Texels.Length;
             Levels = Array.ConvertAll(DetailLevel.All(avatar), LevelOf);
             SplatCounts = Array.ConvertAll(Levels, level => level.SplatCount);
@@ -48,6 +51,8 @@ namespace Mua
         public BranchBuffers Geometry { get; }
 
         public BranchBuffers Appearance { get; }
+
+        public ExpressionBuffers Expressions { get; }
 
         /// <summary>Levels of detail, the finest first.</summary>
         public LevelBuffers[] Levels { get; }
@@ -172,7 +177,7 @@ namespace Mua
 
         private LevelBuffers LevelOf(DetailLevel level)
         {
-            return new LevelBuffers(level, Add)
+            return new LevelBuffers(level, targets, Add)
             {
                 Geometry = BranchLevelOf(Avatar.Geometry, "geometry", level.Geometry, level.Number),
                 Appearance = BranchLevelOf(Avatar.Appearance, "appearance", level.Appearance, level.Number),

@@ -20,6 +20,7 @@ namespace Mua
         private readonly Descriptor describe;
         private readonly SkeletonPose skeleton;
         private readonly float[] componentValues; // [K]
+        private readonly float[] weightValues; // [E]
         private readonly Vector4[] jointValues; // [2 J]
         private readonly BufferSet buffers = new BufferSet();
         private ChannelDecoder decoder;
@@ -37,6 +38,7 @@ namespace Mua
             describe = new Descriptor(file.Skeleton, file.Encoding);
             skeleton = new SkeletonPose(file.Skeleton);
             componentValues = new float[describe.Count];
+            weightValues = new float[file.ExpressionCount];
             jointValues = new Vector4[2 * file.Skeleton.JointCount];
             try
             {
@@ -107,22 +109,24 @@ namespace Mua
         /// </summary>
         /// <param name="rotations">[k, J, 4] local joint rotations, newest first.</param>
         /// <param name="translations">[k, J, 3] local joint translations, metres.</param>
+        /// <param name="expressions">[E] weights of expressions, 0 to 1; where there are none, all are 0.</param>
         /// <param name="place">Where the avatar stands.</param>
         /// <param name="level">Level of detail; 0 is the finest.</param>
         public void Decode(
             CommandBuffer commands, ReadOnlySpan<double> rotations, ReadOnlySpan<double> translations,
-            in AvatarPlace place, int level = 0)
+            ReadOnlySpan<float> expressions, in AvatarPlace place, int level = 0)
         {
-            DecodeChannels(commands, rotations, translations, level);
+            DecodeChannels(commands, rotations, translations, expressions, level);
             Repose(commands, rotations, translations, place);
         }
 
         /// <summary>Appends all parts of a decode, without posing; one that was begun is given up.</summary>
         public void DecodeChannels(
-            CommandBuffer commands, ReadOnlySpan<double> rotations, ReadOnlySpan<double> translations, int level = 0)
+            CommandBuffer commands, ReadOnlySpan<double> rotations, ReadOnlySpan<double> translations,
+            ReadOnlySpan<float> expressions, int level = 0)
         {
             decoded = ChannelDecoder.Parts;
-            Begin(shown, rotations, translations, level);
+            Begin(shown, rotations, translations, expressions, level);
             for (int part = 0; part < ChannelDecoder.Parts; part++)
             {
                 decoder.Part(commands, shown, part);
@@ -134,10 +138,11 @@ namespace Mua
         /// Takes the window of a decode that is made part by part beside what is shown, in place of one begun before.
         /// InvalidOperationException where the device has no memory for a second set of channels.
         /// </summary>
-        public void Begin(ReadOnlySpan<double> rotations, ReadOnlySpan<double> translations, int level = 0)
+        public void Begin(
+            ReadOnlySpan<double> rotations, ReadOnlySpan<double> translations, ReadOnlySpan<float> expressions, int level = 0)
         {
             hidden = hidden ?? new ChannelSet(Avatar, describe.Count);
-            Begin(hidden, rotations, translations, level);
+            Begin(hidden, rotations, translations, expressions, level);
             decoded = 0;
         }
 
@@ -191,11 +196,22 @@ namespace Mua
         }
 
         private void Begin(
-            ChannelSet channels, ReadOnlySpan<double> rotations, ReadOnlySpan<double> translations, int level)
+            ChannelSet channels, ReadOnlySpan<double> rotations, ReadOnlySpan<double> translations,
+            ReadOnlySpan<float> expressions, int level)
         {
             channels.Level = Avatar.Levels[level];
             channels.Outside = describe.Write(rotations, translations, componentValues);
             channels.Components.SetData(componentValues);
+            channels.IsExpressive = false;
+            foreach (float weight in expressions)
+            {
+                channels.IsExpressive |= weight != 0;
+            }
+            if (channels.IsExpressive)
+            {
+                expressions.CopyTo(weightValues);
+                channels.Weights.SetData(weightValues);
+            }
         }
 
         private void WritePose(

@@ -57,6 +57,9 @@ namespace Mua
         /// <summary>Its clips; none until it is ready.</summary>
         public AvatarPlayback Playback => State == AvatarState.Ready ? motion.Playback : AvatarPlayback.None;
 
+        /// <summary>Weights of its expressions that were set; none until it is ready.</summary>
+        public AvatarExpressions Expressions => State == AvatarState.Ready ? motion.Pose.Expressions : AvatarExpressions.None;
+
         /// <summary>The decoder; null until it is ready.</summary>
         public AvatarFrame Decoded { get; private set; }
 
@@ -132,7 +135,12 @@ namespace Mua
             {
                 Warn("the rig that posed the avatar was destroyed; a clip plays in its place.");
             }
+            if (motion.LosesFace())
+            {
+                Warn("the mesh whose blend shapes moved the avatar's face was destroyed; its clip moves it in their place.");
+            }
             hasMoved |= motion.Sample(Time.timeAsDouble, step);
+            motion.Express(Time.realtimeSinceStartupAsDouble); // a face moves while the game is paused
             Decoded.Stand(motion.Pose.Current, motion.Pose.CurrentTranslations, placement.Value);
             spreads = owner.SpreadDecode && Application.isPlaying
                 && (Views & AvatarViews.Geometry) == 0; // which is of the finest level
@@ -211,7 +219,8 @@ namespace Mua
             if (steps.Whole != DecodeTurn.None)
             {
                 AvatarPose pose = Window(steps.Whole);
-                Decoded.DecodeChannels(commands, pose.Window, pose.WindowTranslations, DecodeTurn.Level(steps.Whole));
+                Decoded.DecodeChannels(
+                    commands, pose.Window, pose.WindowTranslations, pose.Weights, DecodeTurn.Level(steps.Whole));
             }
             Advance(commands, steps.Finish);
             if (steps.Shows)
@@ -221,7 +230,7 @@ namespace Mua
             if (steps.Begin != DecodeTurn.None)
             {
                 AvatarPose pose = Window(steps.Begin);
-                Decoded.Begin(pose.Window, pose.WindowTranslations, DecodeTurn.Level(steps.Begin));
+                Decoded.Begin(pose.Window, pose.WindowTranslations, pose.Weights, DecodeTurn.Level(steps.Begin));
             }
             Advance(commands, steps.Parts);
             hasMoved |= steps.Shows || steps.Whole != DecodeTurn.None;
@@ -277,7 +286,24 @@ namespace Mua
                     ChooseClip();
                 }
                 BindRig();
+                BindFace();
                 CheckLevel();
+            }
+        }
+
+        /// <summary>The weight of an expression at this moment, by its place among the names.</summary>
+        public float Weight(int expression)
+        {
+            return motion.Pose.Weight(expression);
+        }
+
+        /// <summary>Takes the blend shapes of the owner's Face, where there is one.</summary>
+        public void BindFace()
+        {
+            string fault = State == AvatarState.Ready ? motion.Bind(owner.Face) : "";
+            if (fault.Length > 0)
+            {
+                Warn(fault);
             }
         }
 
@@ -328,6 +354,7 @@ namespace Mua
             State = AvatarState.Ready;
             ChooseClip();
             BindRig();
+            BindFace();
             CheckLevel();
         }
 

@@ -9,6 +9,7 @@ namespace Mua
     {
         private readonly AvatarFile avatar;
         private AvatarJoints joints; // null where a clip gives the pose
+        private AvatarFace face; // null where no mesh sets expressions
 
         public AvatarMotion(AvatarFile avatar)
         {
@@ -51,6 +52,35 @@ namespace Mua
             }
             joints = null;
             return true;
+        }
+
+        /// <summary>
+        /// Takes the blend shapes of a mesh in place of those of another, or none for null; what is wrong with them, or nothing.
+        /// </summary>
+        public string Bind(SkinnedMeshRenderer mesh)
+        {
+            face?.Release();
+            face = mesh == null ? null : new AvatarFace(Pose.Expressions, mesh);
+            return face == null ? "" : face.Missing;
+        }
+
+        /// <summary>Lets go of a mesh that was destroyed; whether it was since the last call.</summary>
+        public bool LosesFace()
+        {
+            if (face == null || face.Alive)
+            {
+                return false;
+            }
+            face.Release();
+            face = null;
+            return true;
+        }
+
+        /// <summary>Takes the weights of expressions of a moment.</summary>
+        public void Express(double seconds)
+        {
+            face?.Read();
+            Pose.Express(seconds);
         }
 
         /// <summary>

@@ -13,6 +13,7 @@ namespace Mua
         private const double FrameSlack = 1e-6; // frames; a time that was a frame's own stays in it
         private const int LongestGap = 4; // frames without a pose after which the window starts anew
         private const double LongestLag = 1.1; // frames in which a late window is shown; displayed frames vary a little
+        private const double LongestForeseen = 3; // frames within which a clip comes to its next one, unless it plays slowly
         private const long Windows = 1L << 32; // more than there are of one motion
 
         private readonly Skeleton skeleton;
@@ -27,12 +28,15 @@ namespace Mua
         private readonly double[] decoded; // [J, 4] newest of the last decode
         private readonly double[] next; // [J, 4]
         private readonly double[] nextTranslations; // [J, 3]
+        private readonly float[] weights; // [E] of the window
         private ClipSampler clip; // of the window; null where it is of transforms
         private int index = -1; // frame of the clip
         private long first; // number of the first window of a motion
         private double newest; // seconds; of the window's newest pose of transforms
         private double sampled; // seconds; of the last sample of transforms
         private int rested; // newest poses of the window that are the pose of transforms of this moment
+        private double now, expressed = double.NegativeInfinity; // seconds; since when weights have waited for a frame
+        private long known; // window at the last Express
         private bool started;
         private bool isHeld;
 
@@ -50,6 +54,8 @@ namespace Mua
             decoded = new double[4 * skeleton.JointCount];
             next = new double[4 * skeleton.JointCount];
             nextTranslations = new double[3 * skeleton.JointCount];
+            weights = new float[avatar.ExpressionCount];
+            Expressions = new AvatarExpressions(avatar);
         }
 
         /// <summary>[k, J, 4] local rotations, newest first.</summary>
@@ -57,6 +63,12 @@ namespace Mua
 
         /// <summary>[k, J, 3] local translations, metres.</summary>
         public ReadOnlySpan<double> WindowTranslations => windowTranslations;
+
+        /// <summary>[E] weights of expressions of the window that was read last.</summary>
+        public ReadOnlySpan<float> Weights => weights;
+
+        /// <summary>Weights that were set in place of the clip's.</summary>
+        public AvatarExpressions Expressions { get; }
 
         /// <summary>[J, 4] local rotations of this moment.</summary>
         public ReadOnlySpan<double> Current => current;
@@ -147,10 +159,44 @@ namespace Mua
             Following = Due;
         }
 
-        /// <summary>Takes a window, Due or Following, where it is not taken; one of transforms is there already.</summary>
+        /// <summary>
+        /// Takes a window, Due or Following, where it is not taken; one of transforms is there already. Weights that were set
+        /// are those of this moment.
+        /// </summary>
         public void ReadWindow(long number)
         {
             clip?.ReadWindow((int)(number - first), frames, window, windowTranslations);
+            ReadWeights((int)(number - first));
+            Expressions.Take(weights);
+            expressed = (now - expressed) * rate >= 1 ? now : expressed;
+        }
+
+        /// <summary>The weight of an expression at this moment.</summary>
+        public float Weight(int expression)
+        {
+            float set = Expressions.Get(expression);
+            return float.IsNaN(set) ? clip == null ? 0 : clip.ReadExpression(index, expression) : set;
+        }
+
+        /// <summary>
+        /// Makes another decode due where weights were set since the last, at most one in each frame of the avatar's rate. One
+        /// that is foreseen takes them with it.
+        /// </summary>
+        public void Express(double seconds)
+        {
+            double step = seconds - now, age = (seconds - expressed) * rate;
+            bool isNew = Due != known;
+            bool isEarly = age >= 0 && age < (Following == Due ? 1 : LongestForeseen) - FrameSlack;
+            now = seconds;
+            if (!isNew && !isEarly && Expressions.HasChanged)
+            {
+                first += Windows;
+                Due += Windows;
+                Following += Windows;
+                MayLag = ChannelDecoder.Parts / DecodeSchedule.Alone * step * rate <= LongestLag;
+                expressed = age >= 0 && age < LongestGap ? expressed + Math.Floor(age + FrameSlack) / rate : seconds;
+            }
+            known = Due;
         }
 
         /// <summary>
@@ -184,6 +230,18 @@ namespace Mua
             clip = null;
             isHeld = false;
             return !isSame;
+        }
+
+        private void ReadWeights(int frame)
+        {
+            if (clip == null)
+            {
+                Array.Clear(weights, 0, weights.Length);
+            }
+            else
+            {
+                clip.ReadExpressions(frame, weights);
+            }
         }
 
         private void Approach(double t)

@@ -75,6 +75,10 @@ namespace Mua
         [SerializeField, Tooltip("Root of a rig whose transforms pose the avatar; if empty, a clip of the avatar plays.")]
         private Transform rig = null;
 
+        [SerializeField]
+        [Tooltip("A mesh whose blend shapes set the avatar's expressions of equal names, as a face tracker moves them.")]
+        private SkinnedMeshRenderer face = null;
+
         [SerializeField, Tooltip("Name of the clip to play; if empty, the first.")]
         private string clip = "";
 
@@ -161,6 +165,23 @@ namespace Mua
             }
         }
 
+        /// <summary>
+        /// A mesh whose blend shapes, of weights 0 to 100, set the avatar's expressions of equal names; case and underscores do
+        /// not matter. Null if the clip and SetExpression do.
+        /// </summary>
+        public SkinnedMeshRenderer Face
+        {
+            get => face;
+            set
+            {
+                face = value;
+                shown?.BindFace();
+            }
+        }
+
+        /// <summary>Names of the avatar's expressions, as in its file; none until it is ready.</summary>
+        public IReadOnlyList<string> ExpressionNames => Expressions.Names;
+
         /// <summary>What is drawn of the avatar.</summary>
         public AvatarViews Views
         {
@@ -209,6 +230,8 @@ namespace Mua
         /// <summary>Name of the clip to begin with, as the inspector has it.</summary>
         internal string Clip => clip;
 
+        private AvatarExpressions Expressions => shown == null ? AvatarExpressions.None : shown.Expressions;
+
         private AvatarPlayback Playback => shown == null ? AvatarPlayback.None : shown.Playback;
 
         /// <summary>All AvatarRenderers of active GameObjects in the open scenes, in no order.</summary>
@@ -256,6 +279,39 @@ namespace Mua
             given = content;
             givenName = name;
             Reload();
+        }
+
+        /// <summary>
+        /// Sets how far an expression shows, held to 0 to 1, whatever else moves the avatar; whether it has one of this name,
+        /// which no avatar has until it is ready. Another avatar begins without. ArgumentException where the weight is no finite
+        /// number.
+        /// </summary>
+        public bool SetExpression(string name, float weight)
+        {
+            if (float.IsNaN(weight) || float.IsInfinity(weight))
+            {
+                throw new ArgumentException(
+                    "the weight of the expression " + name + " is " + weight + ", expected a finite number", nameof(weight));
+            }
+            int index = Expressions.Find(name);
+            if (index >= 0)
+            {
+                Expressions.Set(index, weight);
+            }
+            return index >= 0;
+        }
+
+        /// <summary>How far an expression shows at this moment, 0 to 1; 0 where the avatar has none of this name.</summary>
+        public float GetExpression(string name)
+        {
+            int index = Expressions.Find(name);
+            return index < 0 ? 0 : shown.Weight(index);
+        }
+
+        /// <summary>Gives all expressions that were set back to the clip.</summary>
+        public void ResetExpressions()
+        {
+            Expressions.Reset();
         }
 
         private void OnEnable()

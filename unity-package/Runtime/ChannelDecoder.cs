@@ -20,10 +20,13 @@ namespace Mua
         private readonly MlpMatmul mlpMatmul;
         private readonly BlendSubbands blendSubbands;
         private readonly InverseDwt inverseDwt;
+        private readonly Expressions expressions;
         private readonly BufferSet buffers = new BufferSet();
         private readonly GraphicsBuffer[] activations = new GraphicsBuffer[2];
         private readonly GraphicsBuffer[] textures = new GraphicsBuffer[2]; // finest detailed, its ll
         private GraphicsBuffer details;
+        private GraphicsBuffer moved; // [V, 3] 0 where no expression moves a vertex
+        private GraphicsBuffer bends; // [4 T]
 
         /// <summary>
         /// InvalidOperationException where a kernel is missing or a buffer is too large for the device.
@@ -34,6 +37,7 @@ namespace Mua
             mlpMatmul = new MlpMatmul(resources.MlpMatmul);
             blendSubbands = new BlendSubbands(resources.BlendSubbands);
             inverseDwt = new InverseDwt(resources.InverseDwt);
+            expressions = new Expressions(resources.Expressions);
             try
             {
                 CreateBuffers();
@@ -65,6 +69,10 @@ namespace Mua
             {
                 Coarse(commands, channels);
             }
+            if (part == Parts - 1 && channels.IsExpressive)
+            {
+                Express(commands, channels);
+            }
         }
 
         public void Dispose()
@@ -78,6 +86,10 @@ namespace Mua
             layers = Math.Max(layers, Math.Max(Widest(avatar.Geometry.Mlp), Widest(avatar.Appearance.Mlp)));
             long bands = Math.Max(LargestBand(avatar.Geometry), LargestBand(avatar.Appearance));
             details = buffers.Structured("details", bands, sizeof(uint));
+            var still = new float[avatar.Expressions.VertexCount == 0 ? 1 : 3 * avatar.VertexCount];
+            moved = buffers.Structured("moved", still.Length, sizeof(float));
+            moved.SetData(still);
+            bends = buffers.Structured("bends", 4L * avatar.Expressions.TriangleCount, 4 * sizeof(float));
             for (int i = 0; i < 2; i++)
             {
                 activations[i] = buffers.Structured("activations", layers, sizeof(float));
@@ -105,6 +117,16 @@ namespace Mua
             GraphicsBuffer coefficients = Mlp(commands, avatar.CoarseMlp, channels.Components);
             mlpMatmul.Transposed(commands, avatar.Mesh, coefficients, channels.Mesh);
             commands.EndSample(AvatarStages.CoarseMesh);
+        }
+
+        /// <summary>Moves the vertices of expressions, and bends the texels in reach.</summary>
+        private void Express(CommandBuffer commands, ChannelSet channels)
+        {
+            commands.BeginSample(AvatarStages.Texture);
+            expressions.Sum(commands, avatar.Expressions, channels.Weights, moved, channels.Mesh);
+            expressions.Bend(commands, avatar, moved, channels.Mesh, bends);
+            expressions.Bend(commands, channels.Level, bends, channels.TexelChannels);
+            commands.EndSample(AvatarStages.Texture);
         }
 
         /// <summary>Coefficients, LL, and level by level up to the finest details.</summary>

@@ -18,6 +18,7 @@ namespace Mua
             {
                 Components = buffers.Structured("components", componentCount, sizeof(float));
                 Mesh = buffers.Structured("mesh", 3L * avatar.VertexCount, sizeof(float));
+                Weights = buffers.Structured("weights", avatar.Avatar.ExpressionCount, sizeof(float));
                 TexelChannels = buffers.Structured("texel_channels", (long)ChannelRows * Level.SplatCount, 2 * sizeof(uint));
             }
             catch
@@ -35,6 +36,12 @@ namespace Mua
 
         /// <summary>Share of the pose that training did not show, 0 to 1.</summary>
         public double Outside { get; set; }
+
+        /// <summary>[E] of expressions, where IsExpressive.</summary>
+        public GraphicsBuffer Weights { get; }
+
+        /// <summary>Whether one of them is not 0.</summary>
+        public bool IsExpressive { get; set; }
 
         /// <summary>[V, 3] canonical vertices, metres.</summary>
         public GraphicsBuffer Mesh { get; }

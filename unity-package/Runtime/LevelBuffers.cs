@@ -15,11 +15,12 @@ namespace Mua
     {
         private const int OneSided = 1 << 31; // beside the triangle
 
-        private readonly Upload tiles, tileRows, texels;
+        private readonly Upload tiles, tileRows, texels, reached;
 
         /// <param name="level">What it is made of.</param>
+        /// <param name="targets">What may bend its texels.</param>
         /// <param name="add">Takes what is to be uploaded.</param>
-        public LevelBuffers(DetailLevel level, Func<Upload, Upload> add)
+        public LevelBuffers(DetailLevel level, ExpressionTargets targets, Func<Upload, Upload> add)
         {
             Number = level.Number;
             Size = level.Size;
@@ -28,6 +29,9 @@ namespace Mua
             tiles = add(new Upload("texels.texels", held.Tiles, sizeof(int)));
             tileRows = add(new Upload("texels.texels", held.Rows, 2 * sizeof(int)));
             texels = add(new Upload("texels", Places(level), 2 * sizeof(int)));
+            int[] bent = targets.Reached(level);
+            reached = add(new Upload("expressions.vertices", bent, 2 * sizeof(int)));
+            ReachedCount = bent.Length / 2;
         }
 
         /// <summary>0 is the finest.</summary>
@@ -51,6 +55,12 @@ namespace Mua
 
         /// <summary>[N] triangle and whether it is one-sided, and its first two barycentrics in 16 bits each.</summary>
         public GraphicsBuffer Texels => texels.Buffer;
+
+        /// <summary>How many texels expressions may bend.</summary>
+        public int ReachedCount { get; }
+
+        /// <summary>[K, 2] these texels, and their triangle's place among those in reach.</summary>
+        public GraphicsBuffer Reached => reached.Buffer;
 
         /// <summary>[N, 2] as pack_texels of python/mua/kernels/splat_project.py has them.</summary>
         private static int[] Places(DetailLevel level)

@@ -57,6 +57,12 @@ namespace Mua
             Watch(Slower, null, (shown, i) => shown.Level = i / 5 % 2 == 0 ? AvatarLevel.Full : AvatarLevel.Quarter);
         }
 
+        /// <summary>A face that moves in every displayed frame, of an avatar that stands still.</summary>
+        private static void SpreadsFace()
+        {
+            Watch(Fast, shown => shown.IsPlaying = false, (shown, i) => shown.SetExpression("jawOpen", i / (float)Watched));
+        }
+
         private static void SpreadsRig()
         {
             Watch(Fast, FollowRig, TurnRig);

@@ -166,6 +166,10 @@ internal static class FormatProgram
         {
             Print("surface.triangles", avatar.Surface.Triangles(avatar.Texels));
         }
+        if (avatar.Expressions != null)
+        {
+            Print("expressions.names", string.Join("\n", avatar.Expressions.Names));
+        }
         for (int i = 0; i < avatar.Clips.Length; i++)
         {
             Print("clips." + i + ".name", avatar.Clips[i].Name);
@@ -199,6 +203,16 @@ internal static class FormatProgram
             {
                 add("clips." + i + ".translations", avatar.Clips[i].Translations);
             }
+            if (avatar.Clips[i].Expressions != null)
+            {
+                add("clips." + i + ".expressions", avatar.Clips[i].Expressions);
+            }
+        }
+        if (avatar.Expressions != null)
+        {
+            add("expressions.starts", avatar.Expressions.Starts);
+            add("expressions.vertices", avatar.Expressions.Vertices);
+            add("expressions.offsets", avatar.Expressions.Offsets);
         }
         return tensors;
     }

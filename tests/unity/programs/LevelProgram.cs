@@ -31,7 +31,9 @@ internal static class LevelProgram
             return;
         }
         AvatarFile avatar = AvatarFile.Read(File.ReadAllBytes(arguments[0]));
+        var targets = new ExpressionTargets(avatar);
         Console.WriteLine("texel " + ((double)avatar.Texels.Length).ToString("R"));
+        new ExpressionBuffers(targets, Uploaded);
         foreach (DetailLevel level in DetailLevel.All(avatar))
         {
             Console.WriteLine("level " + level.Number + " " + level.Size + " " + level.Count);
@@ -41,16 +43,18 @@ internal static class LevelProgram
             Print("geometry", level.Geometry);
             Print("appearance", level.Appearance);
             Print("one_sided", level.OneSided);
-            new LevelBuffers(level, upload =>
-            {
-                Array elements = Elements(upload);
-                if (!(elements is TexelTiles.Row[])) // which a frame is made with
-                {
-                    Print("uploaded", elements);
-                }
-                return upload;
-            });
+            new LevelBuffers(level, targets, Uploaded);
         }
+    }
+
+    private static Upload Uploaded(Upload upload)
+    {
+        Array elements = Elements(upload);
+        if (!(elements is TexelTiles.Row[])) // which a frame is made with
+        {
+            Print("uploaded", elements);
+        }
+        return upload;
     }
 
     /// <summary>Levels of a line: budget, then for each avatar distance, texel, shown, count of levels, counts.</summary>

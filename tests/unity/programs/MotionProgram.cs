@@ -23,6 +23,7 @@ internal static class MotionProgram
         var translations = new double[3 * joints * window];
         var inputs = new float[avatar.Encoding.ComponentCount];
         var skinning = new float[8 * joints];
+        var weights = new float[avatar.Expressions == null ? 0 : avatar.Expressions.Names.Length];
         var descriptor = new Descriptor(avatar.Skeleton, avatar.Encoding);
         var pose = new SkeletonPose(avatar.Skeleton);
         foreach (Clip clip in avatar.Clips)
@@ -33,6 +34,8 @@ internal static class MotionProgram
             {
                 double outside = Play(
                     sampler, frame, window, rotations, translations, inputs, skinning, descriptor, pose);
+                sampler.ReadExpressions(frame, weights);
+                Print("expressions", weights);
                 Print("rotations", rotations);
                 Print("translations", translations);
                 Print("components", inputs);

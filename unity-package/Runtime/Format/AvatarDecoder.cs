@@ -41,7 +41,8 @@ namespace Mua.Format
             avatar.Geometry = model.Geometry(tree.Child("geometry"), count, inputs, side);
             avatar.Appearance = model.Appearance(tree.Child("appearance"), count, inputs, side);
             Magnitude.Require(avatar);
-            avatar.Clips = Clips(tree.Children("clips"), avatar.Skeleton, avatar.Encoding.Rate);
+            avatar.Expressions = ExpressionDecoder.Expressions(tree.Child("expressions"), vertices, tensors);
+            avatar.Clips = Clips(tree.Children("clips"), avatar.Skeleton, avatar.ExpressionCount, avatar.Encoding.Rate);
             avatar.Bounds = Bounds(tree.Child("bounds"));
             avatar.Thumbnail = Thumbnail(tree.Block("thumbnail"));
             avatar.Surface = rig.Surface(tree.Child("surface"), content, avatar.Texels);
@@ -118,16 +119,16 @@ namespace Mua.Format
             return rate;
         }
 
-        private Clip[] Clips(Table[] tree, Skeleton skeleton, double encodingRate)
+        private Clip[] Clips(Table[] tree, Skeleton skeleton, int expressions, double encodingRate)
         {
             var clips = new Clip[tree.Length];
             double added = 0;
             for (int i = 0; i < clips.Length; i++)
             {
-                clips[i] = Clip(tree[i], "clips[" + i + "]", skeleton);
+                clips[i] = Clip(tree[i], "clips[" + i + "]", skeleton, expressions);
                 int frames = clips[i].FrameCount;
                 double times = Math.Max(encodingRate / clips[i].Rate, 1);
-                added += (times - 1) * frames * skeleton.JointCount;
+                added += (times - 1) * frames * (skeleton.JointCount + (clips[i].Expressions == null ? 0 : expressions));
                 if (times * frames > Limits.MaxFrames || added > Limits.MaxAdded)
                 {
                     throw Refusal.Of(
@@ -139,7 +140,7 @@ namespace Mua.Format
             return clips;
         }
 
-        private Clip Clip(Table tree, string path, Skeleton skeleton)
+        private Clip Clip(Table tree, string path, Skeleton skeleton, int expressions)
         {
             int joints = skeleton.JointCount;
             Tensor rotations = tensors.Reals(tree.Child("rotations"), path + ".rotations", Any, joints, 4);
@@ -160,6 +161,8 @@ namespace Mua.Format
                 Rate = rate,
                 Rotations = rotations,
                 Translation = translation,
+                Expressions = ExpressionDecoder.Weights(
+                    tree.Child("expressions"), path + ".expressions", rotations.Shape[0], expressions, tensors),
             };
         }
 

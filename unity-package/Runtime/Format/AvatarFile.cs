@@ -46,6 +46,12 @@ namespace Mua.Format
         /// <summary>Triangles over the texels; null where the file holds none.</summary>
         public Surface Surface { get; internal set; }
 
+        /// <summary>What moves its face besides joints; null where the file holds none.</summary>
+        public Expressions Expressions { get; internal set; }
+
+        /// <summary>E.</summary>
+        public int ExpressionCount => Expressions == null ? 0 : Expressions.Names.Length;
+
         /// <summary>The avatar in `content`, which it keeps; AvatarFormatException says what is wrong with a bad one.</summary>
         public static AvatarFile Read(byte[] content)
         {

@@ -17,6 +17,9 @@ namespace Mua.Format
         /// <summary>[F, M, 3] local translations of the skeleton's translated joints, metres; null where it has none.</summary>
         public Tensor Translations { get; internal set; }
 
+        /// <summary>[F, E] weights of the avatar's expressions, 0 to 1; null where it moves none.</summary>
+        public Tensor Expressions { get; internal set; }
+
         /// <summary>F.</summary>
         public int FrameCount => Rotations.Shape[0];
     }

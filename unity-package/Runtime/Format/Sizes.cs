@@ -28,6 +28,8 @@ namespace Mua.Format
             most = wavelet.Block("rec_lo").Count > Limits.MostTaps ? 0 : most;
             Require("texels.levels", texels.Children("levels").Length, 0, most);
             Require("clips", tree.Children("clips").Length, 0, Limits.MaxClips);
+            Table expressions = tree.Child("expressions");
+            Require("expressions.names", expressions == null ? 0 : expressions.Texts("names").Length, 0, Limits.MaxExpressions);
         }
 
         /// <summary>The texture's memory goes with its sides, which a few bytes could claim: so many must be valid.</summary>

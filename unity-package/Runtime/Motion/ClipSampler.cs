@@ -63,10 +63,7 @@ namespace Mua.Motion
         /// <summary>Local rotations [J, 4] and translations [J, 3], metres, of one frame.</summary>
         public void ReadFrame(int index, Span<double> rotations, Span<double> translations)
         {
-            int last = clip.FrameCount - 1;
-            double time = IsPlain ? index : Math.Min(index * step, last);
-            int before = (int)time, after = Math.Min(before + 1, last);
-            double t = time - before;
+            Moment(index, out int before, out int after, out double t);
             for (int joint = 0; joint < skeleton.JointCount; joint++)
             {
                 QuaternionD rotation = Rotation(before, joint);
@@ -83,6 +80,37 @@ namespace Mua.Motion
                 Vector3D moved = Translation(clip.Translations, before * count + i, after * count + i, t);
                 moved.Store(translations, skeleton.Translated[i]);
             }
+        }
+
+        /// <summary>Weights [E] of expressions of one frame; all 0 where the clip has none.</summary>
+        public void ReadExpressions(int index, Span<float> weights)
+        {
+            for (int i = 0; i < weights.Length; i++)
+            {
+                weights[i] = ReadExpression(index, i);
+            }
+        }
+
+        /// <summary>Weight of one expression of one frame.</summary>
+        public float ReadExpression(int index, int expression)
+        {
+            if (clip.Expressions == null)
+            {
+                return 0;
+            }
+            Moment(index, out int before, out int after, out double t);
+            int count = clip.Expressions.Shape[1];
+            return (float)Number(clip.Expressions, before * count + expression, after * count + expression, t);
+        }
+
+        /// <summary>The clip's frames before and after one of ours, and how far it lies between them.</summary>
+        private void Moment(int index, out int before, out int after, out double t)
+        {
+            int last = clip.FrameCount - 1;
+            double time = IsPlain ? index : Math.Min(index * step, last);
+            before = (int)time;
+            after = Math.Min(before + 1, last);
+            t = time - before;
         }
 
         private Vector3D Translation(Tensor stored, int before, int after, double t)

@@ -4,7 +4,7 @@ namespace Mua.Samples.PosedByRig
 {
     /// <summary>
     /// Shows an avatar in the place of a rigged character: whatever moves the rig, an Animator, a script or physics, moves the
-    /// avatar. The joints are found by name.
+    /// avatar, and its blend shapes the avatar's expressions. Joints and expressions are found by name.
     /// </summary>
     [RequireComponent(typeof(AvatarRenderer))]
     public sealed class PosedByRig : MonoBehaviour
@@ -27,12 +27,14 @@ namespace Mua.Samples.PosedByRig
             avatar = GetComponent<AvatarRenderer>();
             avatar.Rig = rig;
             hidden = rig == null ? new Renderer[0] : rig.GetComponentsInChildren<Renderer>();
+            avatar.Face = Face();
             Show(false);
         }
 
         private void OnDisable()
         {
             avatar.Rig = null;
+            avatar.Face = null;
             Show(true);
         }
 
@@ -46,6 +48,22 @@ namespace Mua.Samples.PosedByRig
                 float size = above == null ? 1 : above.lossyScale.x;
                 transform.localScale = size > 0 ? rig.lossyScale / size : rig.lossyScale;
             }
+        }
+
+        /// <summary>Of the rig's meshes the one with most blend shapes; null where none has any.</summary>
+        private SkinnedMeshRenderer Face()
+        {
+            SkinnedMeshRenderer face = null;
+            int most = 0;
+            foreach (Renderer mesh in hidden)
+            {
+                if (mesh is SkinnedMeshRenderer skinned && skinned.sharedMesh != null && skinned.sharedMesh.blendShapeCount > most)
+                {
+                    face = skinned;
+                    most = skinned.sharedMesh.blendShapeCount;
+                }
+            }
+            return face;
         }
 
         /// <summary>The rig's own meshes.</summary>

@@ -13,6 +13,7 @@ namespace Mua
         public readonly AvatarFrame Frame;
         public readonly ClipSampler Clip;
         private readonly double[] rotations, translations;
+        private readonly float[] weights;
 
         public Actor(AvatarResources resources, string path)
         {
@@ -24,13 +25,15 @@ namespace Mua
             Frame = new AvatarFrame(resources, Buffers);
             Clip = new ClipSampler(file.Clips[0], file.Skeleton, file.Encoding.Rate);
             rotations = new double[4 * file.Encoding.Window * file.Skeleton.JointCount];
+            weights = new float[file.ExpressionCount];
             translations = new double[3 * file.Encoding.Window * file.Skeleton.JointCount];
         }
 
         public void Decode(CommandBuffer commands, double seconds, in AvatarPlace place, int level = 0)
         {
             Clip.ReadWindow((int)Clip.Position(seconds), Buffers.Avatar.Encoding.Window, rotations, translations);
-            Frame.Decode(commands, rotations, translations, place, level);
+            Clip.ReadExpressions((int)Clip.Position(seconds), weights);
+            Frame.Decode(commands, rotations, translations, weights, place, level);
         }
 
         public void Dispose()

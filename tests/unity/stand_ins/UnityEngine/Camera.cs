@@ -103,10 +103,32 @@ namespace UnityEngine
 
     public sealed class Mesh : Object
     {
+        internal readonly List<string> Shapes = new List<string>();
+
         public Bounds bounds { get; set; }
+        public int blendShapeCount { get { return Shapes.Count; } }
+        public string GetBlendShapeName(int shapeIndex) { return Shapes[shapeIndex]; }
+        public void AddBlendShapeFrame(
+            string shapeName, float frameWeight, Vector3[] deltaVertices, Vector3[] deltaNormals, Vector3[] deltaTangents)
+        {
+            Shapes.Add(shapeName);
+        }
     }
 
     public sealed class MeshFilter : Component { public Mesh sharedMesh { get; set; } }
     public class Renderer : Component { public Material sharedMaterial { get; set; } public bool enabled { get; set; } }
     public sealed class MeshRenderer : Renderer { }
+
+    public class SkinnedMeshRenderer : Renderer
+    {
+        private readonly Dictionary<int, float> weights = new Dictionary<int, float>();
+
+        public Mesh sharedMesh { get; set; }
+        public float GetBlendShapeWeight(int index)
+        {
+            float weight;
+            return weights.TryGetValue(index, out weight) ? weight : 0;
+        }
+        public void SetBlendShapeWeight(int index, float value) { weights[index] = value; }
+    }
 }

@@ -75,6 +75,7 @@ namespace UnityEngine
         public static float time { get; private set; }
         public static double timeAsDouble { get { return time; } }
         public static float realtimeSinceStartup { get { return time; } }
+        public static double realtimeSinceStartupAsDouble { get { return time; } }
         public static int frameCount { get; private set; }
 
         internal static void Advance(float seconds)
