@@ -6,11 +6,10 @@
 /** @typedef {{setPose?: (pose: object) => void}} Posable */
 
 /** Pose the avatars of an element by what a socket brings. */
-export function follow(/** @type {{avatars: readonly object[]}} */ element, /** @type {WebSocket} */ socket) {
+export function follow(/** @type {{avatars: readonly Posable[]}} */ element, /** @type {WebSocket} */ socket) {
   socket.addEventListener("message", ({ data }) => {
     const { id, avatars } = /** @type {{id: number, avatars: object[]}} */ (JSON.parse(data));
-    /** @type {Posable | undefined} */ for (const [index, pose] of avatars.entries())
-      (element.avatars[index])?.setPose?.(pose);
+    for (const [index, pose] of avatars.entries()) element.avatars[index]?.setPose?.(pose);
     // Twice: in the first of these the element may draw after us.
     requestAnimationFrame(() => requestAnimationFrame(() => socket.readyState === 1 && socket.send(String(id))));
   });
