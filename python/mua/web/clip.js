@@ -14,6 +14,7 @@ import { normalized, slerp } from "./rotation.js";
  * @property {Reals} translations [F, K, 3] of joints that are translated beside it
  * @property {Int32Array} [translated] these joints, of a clip that a page loaded; else those of the skeleton
  * @property {Float32Array} [expressions] weights [F, E]
+ * @property {boolean} [loop] whether it starts over at its end, as it does if left out
  */
 /** @typedef {{names: string[], root: number, bindTranslations: Float64Array, translated: Int32Array}} Joints */
 /** @typedef {import("./skeleton.js").Pose} Pose */
