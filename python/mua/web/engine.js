@@ -24,6 +24,7 @@ import { VR } from "./vr.js";
  * @property {Map<string, number>} grounds by what it plays
  * @property {import("./skeleton.js").Pose | null} pose that the page has set
  * @property {LivePose | null} live and what is decoded of it
+ * @property {boolean} fresh whether it has set something since
  * @property {Float32Array | null} weights of expressions that the page has set
  * @property {number} changes of these and of clips, which tell decodes apart
  * @property {Clip[]} added by the page
@@ -174,7 +175,7 @@ export class Engine {
 
   /** @returns {Entry} */
   entry(/** @type {Avatar} */ avatar, /** @type {import("./renderer.js").Slot} */ slot) {
-    const posed = { pose: null, live: null, weights: null, changes: 0, added: [], asked: 0 };
+    const posed = { pose: null, live: null, fresh: false, weights: null, changes: 0, added: [], asked: 0 };
     return { avatar, slot, grounds: new Map(), handle: handleOf(avatar, this), ...posed };
   }
 
@@ -184,6 +185,7 @@ export class Engine {
     if (!entry) return;
     entry.pose = given && poseFrom(entry.avatar, given);
     if (!given) entry.live = null;
+    entry.fresh = true;
     this.onchange?.();
   }
 
@@ -191,8 +193,11 @@ export class Engine {
   setExpressions(handle, given) {
     const entry = this.entryOf(handle);
     if (!entry) return;
-    entry.weights = given && weightsFrom(entry.avatar.expressions, entry.weights, given);
+    const weights = given && weightsFrom(entry.avatar.expressions, entry.weights, given);
+    if (String(weights) === String(entry.weights)) return;
+    entry.weights = weights;
     entry.changes += 1;
+    entry.fresh = true;
     this.onchange?.();
   }
 
@@ -219,6 +224,7 @@ export class Engine {
   /** Take the poses that pages have set, as of a time of the display or the headset, milliseconds. */
   takePoses(now = performance.now()) {
     for (const entry of this.entries) {
+      entry.fresh = false;
       if (!entry.pose) continue;
       const pose = weighted(entry.pose, entry.weights);
       if (entry.live) entry.live.sample(pose, now / 1000);
@@ -228,7 +234,7 @@ export class Engine {
 
   /** Whether pictures change by themselves. */
   get moving() {
-    return this.playing || this.entries.some(({ pose, live }) => pose && !live?.settled);
+    return this.playing || this.entries.some(({ pose, live, fresh }) => pose && (fresh || !live?.settled));
   }
 
   /** @param {AvatarHandle} handle @returns {Entry | undefined} */

@@ -39,7 +39,7 @@ export function poseFrom({ skeleton, expressions }, { rotations, translations, e
   const pose = { rotations: inward(turned), translations: Float64Array.from(moved) };
   if (!weights) return pose;
   checkNumbers("expressions", weights, expressions.length, `one of each expression of the avatar`);
-  return { ...pose, expressions: Float32Array.from(weights) };
+  return { ...pose, expressions: Float32Array.from(weights, held) };
 }
 
 /** Weights of expressions where a page sets them, over those that it has set before. @param {string[]} names @param {Float32Array | null} before @param {Readonly<Record<string, number>>} given @returns {Float32Array} NaN where it has set none */
@@ -59,9 +59,10 @@ export function weightsFrom(names, before, given) {
 export function weighted(pose, weights) {
   if (!weights) return pose;
   const own = (/** @type {number} */ i) => pose.expressions?.[i] ?? 0;
-  return { ...pose, expressions: weights.map((weight, i) => (Number.isNaN(weight) ? own(i) : weight)) };
+  return { ...pose, expressions: weights.map((weight, i) => held(Number.isNaN(weight) ? own(i) : weight)) };
 }
 
+const held = (/** @type {number} */ weight) => Math.min(Math.max(weight, 0), 1);
 const fault = (/** @type {string} */ sentence) => new AvatarError(`setPose: ${sentence}.`);
 const listed = (/** @type {string[]} */ names) =>
   names.length > SHOWN ? `${names.slice(0, SHOWN).join(", ")}, ... ${names.length} in all` : names.join(", ") || "none";

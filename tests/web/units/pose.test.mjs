@@ -82,6 +82,12 @@ test("weights that are set stay, over those of the pose", () => {
   assert.equal(weighted(pose, null), pose);
 });
 
+test("weights are held to 0 to 1", () => {
+  assert.deepEqual(found({ expressions: [-1, 2] }).expressions, [0, 1]);
+  const weights = weightsFrom(avatar.expressions, null, { blink: -3, smile: 3 });
+  assert.deepEqual(list(weighted(bind, weights).expressions), [0, 1]);
+});
+
 test("expressions that are wrong are a sentence", () => {
   const set = (names, weights) => () => weightsFrom(names, null, weights);
   const says = (message) => ({ name: "AvatarError", message });

@@ -140,7 +140,7 @@ test("pictures change until a pose that was set has come to rest", async () => {
   assert.deepEqual(
     [changes, seen],
     [
-      [true, false],
+      [true, true],
       [false, true, true, false],
     ],
   );
@@ -216,6 +216,14 @@ test("weights that are set go with clip and pose alike, and are forgotten on req
   assert.deepEqual(Array.from(posedAt(engine, 2)[0].live.current.expressions), [0.5, 0.25]);
   handle.setExpressions(null);
   assert.deepEqual(Array.from(posedAt(engine, 3)[0].live.current.expressions), [0.5, 1]);
+});
+
+test("weights that are set again change nothing", async () => {
+  const { engine, handles } = await begun(await avatarOf({ expressions: ["blink", "smile"] }));
+  let changes = 0;
+  engine.onchange = () => (changes += 1);
+  for (const smile of [0.5, 0.5, 0.75]) handles[0].setExpressions({ smile });
+  assert.equal(changes, 2);
 });
 
 test("a motion file that is wrong rejects with a sentence, and what plays goes on", async () => {

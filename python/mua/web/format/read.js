@@ -88,7 +88,7 @@ function decode(/** @type {Tree} */ tree) {
   const surface = readSurface(tree.surface, texels);
   const model = { skeleton, encoding, wavelet, coarse, template, texels, geometry, appearance, surface };
   /** @type {string[]} */
-  const expressions = []; // the format holds none yet
+  const expressions = tree.expressions?.names ?? []; // what they move is not drawn here yet
   return { name, producer, notes, ...model, clips, bounds, thumbnail, expressions };
 }
 
