@@ -41,7 +41,8 @@ export const Hero = ({ clip }: { clip?: string }) => {
   const element = useRef<MuaAvatar>(null);
   const said = ({ detail }: CustomEvent<Error>) => alert(detail.message);
   const ended = ({ detail }: CustomEvent<{ clip: string | null; time: number }>) => alert(detail.clip);
-  return <mua-avatar ref={element} src="hero.muaavatar" clip={clip} speed={0.5} controls onerror={said} onend={ended} />;
+  const told = { onerror: said, onend: ended };
+  return <mua-avatar ref={element} src="hero.muaavatar" clip={clip} speed={0.5} controls {...told} />;
 };
 """
 WRONG = 'import { createPlayer } from "@mua/player";\nexport const wrong: Promise<number> = createPlayer(1);\n'

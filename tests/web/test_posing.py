@@ -46,7 +46,7 @@ def held(folder: Path, avatar: Avatar, frame: int) -> Path:
     """The avatar with a clip of one frame alone."""
     clip = resample(avatar.clips[0], avatar.encoding.rate)
     path = folder / "held.muaavatar"
-    path.write_bytes(encode(replace(avatar, clips=(clip.cut([frame]),)), storage="i8"))
+    path.write_bytes(encode(replace(avatar, clips=(clip.cut(slice(frame, frame + 1)),)), storage="i8"))
     return path
 
 

@@ -42,7 +42,7 @@ def person_site(page: str, **files: Content) -> dict[str, Content]:
     used += ["examples/jsm/loaders/GLTFLoader.js", "examples/jsm/utils/BufferGeometryUtils.js"]
     three = {f"three/{path}": THREE / path for path in used}
     shown = (EXAMPLES / page).read_bytes().replace(b".mjs", b".js")  # which the tests' server knows
-    examples = {"index.html": shown, "landmarks.js": EXAMPLES / "landmarks.js"}
+    examples: dict[str, Content] = {"index.html": shown, "landmarks.js": EXAMPLES / "landmarks.js"}
     return {**player, **three, **examples, "hero.muaavatar": on_person(PERSON), **files}
 
 

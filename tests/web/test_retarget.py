@@ -190,7 +190,10 @@ def test_animations_of_gltf_and_vrma_are_retargeted_as_the_package_does(tmp_path
     found = browser_clip(tmp_path, target, path)
     assert_same(found, loaded.clip)
     turned, _ = target.world(found["rotations"], found["translations"])
-    raised = [rotation.rotate(turned[:, target.names.index(f"{side}Arm")], [0, 0, 1.0]) for side in ("Left", "Right")]
+    raised = [
+        rotation.rotate(turned[:, target.names.index(f"{side}Arm")], np.array([0, 0, 1.0]))
+        for side in ("Left", "Right")
+    ]
     assert np.abs(raised[0][0] - raised[0][-1]).max() > 0.1
     assert np.abs(raised[1][0] - raised[1][-1]).max() > 0.1
 
