@@ -34,6 +34,10 @@ interface Listeners {
   onerror?: (event: CustomEvent<Error>) => void;
   onprogress?: (event: CustomEvent<{ totalProgress: number }>) => void;
   onpicture?: (event: Event) => void;
+  onplay?: (event: CustomEvent<{ clip: string | null; time: number }>) => void;
+  onpause?: (event: CustomEvent<{ clip: string | null; time: number }>) => void;
+  onloop?: (event: CustomEvent<{ clip: string | null; time: number }>) => void;
+  onend?: (event: CustomEvent<{ clip: string | null; time: number }>) => void;
 }
 
 declare module "react" {

@@ -11,6 +11,7 @@ from types import ModuleType
 import checkout
 import compiled_folder
 import gen_golden
+import gen_joint_words
 import gen_kernel_table
 import gen_meta
 import gen_spirv
@@ -30,6 +31,13 @@ def stale(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: pytest.Fixtu
         written = tmp_path / "golden.bin"
         monkeypatch.setattr(module, "generate", lambda: {written: b"generated"})
         monkeypatch.setattr(module, "ROOT", tmp_path)
+    elif module is gen_joint_words:
+        written = tmp_path / "joint_words.js"
+        before = module.MODULE.read_text(encoding="utf-8")
+        written.write_text(before.replace("hips", "hip"), encoding="utf-8")
+        monkeypatch.setattr(module, "MODULE", written)
+        monkeypatch.setattr(module, "ROOT", tmp_path)
+        assert module.generate() == before  # the checkout's own
     elif module is gen_kernel_table:
         written = tmp_path / "README.md"
         before = module.README.read_text()
@@ -45,7 +53,7 @@ def stale(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: pytest.Fixtu
     return module, written
 
 
-@pytest.mark.parametrize("stale", [gen_golden, gen_kernel_table, gen_meta], indirect=True)
+@pytest.mark.parametrize("stale", [gen_golden, gen_joint_words, gen_kernel_table, gen_meta], indirect=True)
 def test_what_is_stale_is_named_and_then_written(
     stale: tuple[ModuleType, Path], monkeypatch: pytest.MonkeyPatch
 ) -> None:

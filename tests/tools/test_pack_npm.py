@@ -12,13 +12,22 @@ import mua
 from mua.share.site import PLAYER, player_files
 
 USE = """
-import { createPlayer, type AvatarHandle } from "@mua/player";
+import { createPlayer, type AvatarHandle, type Follow, type PlayedClip } from "@mua/player";
 import { MuaAvatar } from "@mua/player/element.js";
 export async function begin(canvas: HTMLCanvasElement): Promise<string[]> {
   const player = await createPlayer(canvas);
   const handle: AvatarHandle = await player.load("hero.muaavatar", { onProgress: (share: number) => void share });
   player.camera.azimuth = 1;
   return handle.clips.map(({ name }) => name);
+}
+export async function pose(handle: AvatarHandle, element: MuaAvatar): Promise<string> {
+  const { names, parents, rotations } = handle.skeleton;
+  handle.setPose({ rotations, translations: { [names[0]]: [0, 1, 0] } });
+  handle.setExpressions({ [handle.expressions[0]]: 1 });
+  const follow: Follow = await handle.retarget({ names, parents, rotations, positions: [] }, { mapping: {} });
+  element.setPose(follow(rotations, new Float32Array(3)));
+  const played: PlayedClip | null = await element.playClip(new Blob([]), { loop: false, name: "wave" });
+  return played?.notes.join() ?? "";
 }
 const found = document.querySelector("mua-avatar");
 if (found) [found.src, found.clip, found.speed, found.controls] = ["hero.muaavatar", "wave", 0.5, true];
@@ -31,7 +40,9 @@ import type { MuaAvatar } from "@mua/player/react";
 export const Hero = ({ clip }: { clip?: string }) => {
   const element = useRef<MuaAvatar>(null);
   const said = ({ detail }: CustomEvent<Error>) => alert(detail.message);
-  return <mua-avatar ref={element} src="hero.muaavatar" clip={clip} speed={0.5} controls onerror={said} />;
+  const ended = ({ detail }: CustomEvent<{ clip: string | null; time: number }>) => alert(detail.clip);
+  const told = { onerror: said, onend: ended };
+  return <mua-avatar ref={element} src="hero.muaavatar" clip={clip} speed={0.5} controls {...told} />;
 };
 """
 WRONG = 'import { createPlayer } from "@mua/player";\nexport const wrong: Promise<number> = createPlayer(1);\n'

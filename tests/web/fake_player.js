@@ -43,6 +43,10 @@ class Fake {
     this.context = canvas.getContext("2d");
   }
 
+  get moving() {
+    return this.playing;
+  }
+
   get clips() {
     return this.avatars[0]?.clips ?? [];
   }

@@ -10,6 +10,9 @@
 //   order KEYS     of splats
 //   turns          of a file of displayed frames, as turn_scenarios.py writes them: the steps of each
 //   budget         of a file of frames' milliseconds, likewise: what the next frame may hold
+//   roles          of a file of skeletons: the joints of every role
+//   retarget       of a skeleton's file, and a motion's: the clip and notes, or the sentence that says what is wrong
+//   live           of a skeleton's file and a rig's, with poses of the latter: the avatar's
 //   numbers        half floats, and numbers as sentences have them
 
 import "./strict_inflate.mjs";
@@ -33,7 +36,11 @@ import { Levels } from "../../python/mua/web/levels.js";
 import { groundHeight, shadowArea } from "../../python/mua/web/overlays.js";
 import { boxAround } from "../../python/mua/web/placement.js";
 import { Playback } from "../../python/mua/web/playback.js";
+import { outward } from "../../python/mua/web/pose.js";
 import { texelTiles, texelWords, upsamplingTaps } from "../../python/mua/web/prepare.js";
+import { rolesOf } from "../../python/mua/web/retarget/joint_names.js";
+import { readClip } from "../../python/mua/web/retarget/read.js";
+import { follow } from "../../python/mua/web/retarget/rig.js";
 import { DecodeSchedule } from "../../python/mua/web/schedule.js";
 import { skinning, world } from "../../python/mua/web/skeleton.js";
 import { surfaceMesh } from "../../python/mua/web/surface.js";
@@ -239,8 +246,53 @@ function budgeted(lines) {
   });
 }
 
+/** An avatar's skeleton as a file of JSON has it: names, parents, root, local rotations and translations. */
+function skeletonOf(file) {
+  const { rotations, translations, ...named } = JSON.parse(readFileSync(file, "utf8"));
+  return {
+    ...named,
+    parents: Int32Array.from(named.parents),
+    bindRotations: Float64Array.from(rotations.flat()),
+    bindTranslations: Float64Array.from(translations.flat()),
+  };
+}
+
+/** The clip that a motion's file becomes on a skeleton. */
+async function retargeted(skeleton, file, options) {
+  const avatar = { skeleton, encoding: { rate: options.rate ?? 30 }, expressions: options.expressions ?? [] };
+  const source = new File([readFileSync(file)], file.split("/").pop());
+  try {
+    const { clip, notes } = await readClip(source, avatar, options);
+    const [rotations, translations, expressions] = [clip.rotations, clip.translations, clip.expressions ?? []].map(
+      list,
+    );
+    return { name: clip.name, frames: clip.frames, rotations, translations, expressions, notes };
+  } catch (error) {
+    if (error.name !== "AvatarError") throw error;
+    return { message: error.message };
+  }
+}
+
+/** Poses of a rig, in the world, on a skeleton. */
+function followed(skeleton, { poses, ...rig }) {
+  const wide = (rotations) => list(outward(rotations.flat()));
+  const turn = follow({ skeleton }, { ...rig, rotations: wide(rig.rotations), positions: rig.positions.flat() });
+  return poses.map(({ rotations, positions }) => {
+    const found = turn(wide(rotations), positions.flat());
+    return { rotations: list(found.rotations), translations: list(found.translations) };
+  });
+}
+
 const linesOf = (file) => readFileSync(file, "utf8").trimEnd().split("\n");
 
+if (what === "roles")
+  say(
+    JSON.parse(readFileSync(given[0], "utf8")).map(({ parents, ...named }) =>
+      rolesOf({ ...named, parents: Int32Array.from(parents) }),
+    ),
+  );
+if (what === "retarget") say(await retargeted(skeletonOf(given[0]), given[1], JSON.parse(given[2] ?? "{}")));
+if (what === "live") say(followed(skeletonOf(given[0]), JSON.parse(readFileSync(given[1], "utf8"))));
 if (what === "turns") say(turns(linesOf(given[0])));
 if (what === "budget") say(budgeted(linesOf(given[0])));
 if (what === "measured") say(await measured(given[0], Number(given[1])));

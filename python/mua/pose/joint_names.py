@@ -69,10 +69,10 @@ _SIDED = {
     part: tuple(f"{before}{name}{segment}" for name in names for before in ("", "hand", "f") for segment in _SEGMENTS)
     for part, names in _FINGER_NAMES.items()
 }
-_CENTRAL_PART = {name: part for part, names in _CENTRAL.items() for name in names} | FOREIGN_CENTRAL
-_SIDED_PART = {name: part for part, names in _SIDED.items() for name in names} | FOREIGN_SIDED
-_SIDE = {"left": "left", "l": "left", "right": "right", "r": "right"}
-_NO_PART = {
+CENTRAL_PART = {name: part for part, names in _CENTRAL.items() for name in names} | FOREIGN_CENTRAL
+SIDED_PART = {name: part for part, names in _SIDED.items() for name in names} | FOREIGN_SIDED
+SIDE = {"left": "left", "l": "left", "right": "right", "r": "right"}
+NO_PART = {
     "bind",
     "jnt",
     "joint",
@@ -160,21 +160,21 @@ def _role(name: str, first_finger: int) -> str | None:
         return _wide_role(name)
     bare = _RIG_PREFIX.sub("", NAMESPACE.sub("", name))
     words = [word.lower() for word in _WORD.findall(bare)]
-    side_words = _SIDE if _SIDE.keys() & set(words) else FOREIGN_SIDE
+    side_words = SIDE if SIDE.keys() & set(words) else FOREIGN_SIDE
     sides = [side_words[word] for word in words if word in side_words]
-    kept = [word for word in words if word not in side_words and word not in _NO_PART]
+    kept = [word for word in words if word not in side_words and word not in NO_PART]
     part = "".join(kept)
     for side in SIDES:
-        if not sides and part not in _CENTRAL_PART and (part.startswith(side) or part.endswith(side)):
+        if not sides and part not in CENTRAL_PART and (part.startswith(side) or part.endswith(side)):
             sides, part = [side], part.removeprefix(side).removesuffix(side)
-    if not sides and part[:1] in _SIDE and part[1:] in _SIDED_PART:  # lhumerus, rfoot, lindex
-        sides, part = [_SIDE[part[0]]], part[1:]
+    if not sides and part[:1] in SIDE and part[1:] in SIDED_PART:  # lhumerus, rfoot, lindex
+        sides, part = [SIDE[part[0]]], part[1:]
     if len(sides) != 1:
-        return None if sides else _CENTRAL_PART.get(part, _CENTRAL_PART.get("".join(kept[::-1])))
+        return None if sides else CENTRAL_PART.get(part, CENTRAL_PART.get("".join(kept[::-1])))
     if numbered := _NUMBERED_FINGER.search(bare):
         finger = int(numbered[1]) - first_finger
         return f"{sides[0]} {FINGERS[finger]}" if 0 <= finger < len(FINGERS) else None
-    found = _SIDED_PART.get(part, _SIDED_PART.get("".join(kept[::-1])))  # armUpper
+    found = SIDED_PART.get(part, SIDED_PART.get("".join(kept[::-1])))  # armUpper
     return None if found is None else f"{sides[0]} {found}"
 
 

@@ -15,6 +15,7 @@ POSTER = "poster.png"
 SCRIPT = '<script type="module"'  # how the page's script begins
 WORKER = "worker.js"  # the root of a module graph of its own
 BRIDGE = "bridge.js"  # of pages that a program of this machine feeds
+ON_DEMAND = "retarget/"  # modules that a page needs once it loads motion
 ELEMENT = "<mua-avatar "
 UNSAFE = re.compile(r"[^\w.-]+")  # characters of a file name that some web hosts do not take
 
@@ -60,8 +61,9 @@ def page(shown: Shown, attributes: Mapping[str, str]) -> str:
 
 
 def _preloads() -> str:
-    """Lines by which a browser fetches all modules at once, before it has read their imports."""
+    """Lines by which a browser fetches all modules that it needs at once, before it has read their imports."""
     modules = [path for path in player_files() if path.endswith(".js") and path != WORKER]
+    modules = [path for path in modules if not path.startswith(ON_DEMAND)]
     return "".join(f'<link rel="modulepreload" href="{path}">\n' for path in modules)
 
 

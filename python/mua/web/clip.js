@@ -3,8 +3,20 @@
 
 import { normalized, slerp } from "./rotation.js";
 
-/** @typedef {import("./format/read.js").Clip} Clip */
-/** @typedef {import("./format/rig.js").Skeleton} Skeleton */
+/** @typedef {Float32Array | Float64Array} Reals */
+/**
+ * @typedef {object} Clip
+ * @property {string} name
+ * @property {number} rate frames per second
+ * @property {number} frames
+ * @property {Reals} rotations [F, J, 4] local
+ * @property {Reals} translation [F, 3] of the root joint, local
+ * @property {Reals} translations [F, K, 3] of joints that are translated beside it
+ * @property {Int32Array} [translated] these joints, of a clip that a page loaded; else those of the skeleton
+ * @property {Float32Array} [expressions] weights [F, E]
+ * @property {boolean} [loop] whether it starts over at its end, as it does if left out
+ */
+/** @typedef {{names: string[], root: number, bindTranslations: Float64Array, translated: Int32Array}} Joints */
 /** @typedef {import("./skeleton.js").Pose} Pose */
 
 const LAST_FRAME_SLACK = 1e-6; // frames by which rounding may place the end of a clip before its last sample
@@ -16,7 +28,7 @@ export function framesAt(/** @type {Clip} */ clip, /** @type {number} */ rate) {
 
 /** The pose of one frame of a clip at `rate` frames per second. @returns {Pose} */
 export function sample(
-  /** @type {Skeleton} */ skeleton,
+  /** @type {Joints} */ skeleton,
   /** @type {Clip} */ clip,
   /** @type {number} */ frame,
   /** @type {number} */ rate,
@@ -31,7 +43,7 @@ export function sample(
 
 /** The poses of the window that ends at a frame, newest first; before its first frame a clip is held still. */
 export function window(
-  /** @type {Skeleton} */ skeleton,
+  /** @type {Joints} */ skeleton,
   /** @type {Clip} */ clip,
   /** @type {number} */ frame,
   /** @type {{rate: number, window: number}} */ encoding,
@@ -41,22 +53,30 @@ export function window(
 }
 
 /** A pose as the file holds it. @returns {Pose} */
-function stored(/** @type {Skeleton} */ skeleton, /** @type {Clip} */ clip, /** @type {number} */ frame) {
+function stored(/** @type {Joints} */ skeleton, /** @type {Clip} */ clip, /** @type {number} */ frame) {
   const joints = skeleton.names.length;
   const rotations = Float64Array.from(clip.rotations.subarray(4 * joints * frame, 4 * joints * (frame + 1)));
   for (let at = 0; at < rotations.length; at += 4) normalized(rotations, at);
   const translations = Float64Array.from(skeleton.bindTranslations);
   translations.set(clip.translation.subarray(3 * frame, 3 * frame + 3), 3 * skeleton.root);
-  skeleton.translated.forEach((joint, i) => {
-    const from = 3 * (skeleton.translated.length * frame + i);
+  const translated = clip.translated ?? skeleton.translated;
+  translated.forEach((joint, i) => {
+    const from = 3 * (translated.length * frame + i);
     if (clip.translations.length) translations.set(clip.translations.subarray(from, from + 3), 3 * joint);
   });
-  return { rotations, translations };
+  const count = clip.expressions ? clip.expressions.length / clip.frames : 0;
+  return { rotations, translations, expressions: clip.expressions?.slice(count * frame, count * (frame + 1)) };
 }
 
 /** @returns {Pose} */
 function between(/** @type {Pose} */ a, /** @type {Pose} */ b, /** @type {number} */ t) {
   const rotations = new Float64Array(a.rotations.length);
   for (let at = 0; at < rotations.length; at += 4) rotations.set(slerp(a.rotations, b.rotations, t, at, at), at);
-  return { rotations, translations: a.translations.map((value, i) => value + t * (b.translations[i] - value)) };
+  const mixed = (/** @type {any} */ from, /** @type {any} */ to) =>
+    from?.map((/** @type {number} */ value, /** @type {number} */ i) => value + t * (to[i] - value));
+  return {
+    rotations,
+    translations: mixed(a.translations, b.translations),
+    expressions: mixed(a.expressions, b.expressions),
+  };
 }

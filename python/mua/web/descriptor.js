@@ -42,7 +42,7 @@ function jointNumbers(/** @type {Skeleton} */ skeleton, /** @type {Encoding} */ 
 }
 
 /** The twist of a rotation about Y; none where it has none. */
-function headingOf(/** @type {number[]} */ turn) {
+export function headingOf(/** @type {number[]} */ turn) {
   const length = Math.hypot(turn[0], turn[2]);
   return length < Math.sqrt(Number.EPSILON) ? [1, 0, 0, 0] : [turn[0] / length, 0, turn[2] / length, 0];
 }

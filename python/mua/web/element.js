@@ -18,9 +18,10 @@
 //   orbit       degrees per second by which the camera goes round while it plays, unless less motion is wanted
 //
 // Each is a property too; both may be set before, while and after an avatar loads, as play(), pause() and seek() may be called.
-// `outsideTraining` is how far the pose last drawn is from those of training, 0 to 1.
+// `outsideTraining` is how far the pose last drawn is from those of training, 0 to 1. setPose(), setExpressions() and playClip()
+// move the first avatar as the page wants; each of `avatars` has them too.
 // Events: `progress` with `detail.totalProgress` of 0 to 1, `load` when an avatar is shown, `error` with the error in `detail`,
-// `picture` when the first one is drawn.
+// `picture` when the first one is drawn; `play`, `pause`, `loop` and `end` with clip and time in `detail`.
 
 import { Asked } from "./asked.js";
 import { ASKABLE, adopt, FOLLOWED, levelNamed, missingClip, namesOf, numberOf } from "./attributes.js";
@@ -82,6 +83,7 @@ export class MuaAvatar extends Attributed {
     listen(this.#controls.canvas, { camera: () => this.player?.camera, framed: () => this.#stage.framed, moved });
     this.addEventListener("keydown", (event) => pressed(event, this));
     this.addEventListener("fullscreenchange", () => this.#controls.update());
+    this.addEventListener("error", () => this.avatars.length || this.#asked.drop());
     acceptFiles(this);
   }
 
@@ -96,7 +98,11 @@ export class MuaAvatar extends Attributed {
   disconnectedCallback() {
     this.#watched.disconnect();
     this.#seen.disconnect();
-    queueMicrotask(() => this.isConnected || this.#loading.dispose()); // an element that is moved stays as it is
+    queueMicrotask(() => {
+      if (this.isConnected) return; // an element that is moved stays as it is
+      this.#asked.drop();
+      this.#loading.dispose();
+    });
   }
 
   attributeChangedCallback(
@@ -180,6 +186,38 @@ export class MuaAvatar extends Attributed {
   nextLevel() {
     const at = this.levels.indexOf(this.level);
     this.level = this.levels[(at + 1) % this.levels.length];
+  }
+
+  /** The skeleton of the first avatar; null before it is there. */
+  get skeleton() {
+    return this.avatars[0]?.skeleton ?? null;
+  }
+
+  /** Names of the first avatar's expressions. */
+  get expressions() {
+    return this.avatars[0]?.expressions ?? [];
+  }
+
+  /** Show the first avatar in a pose in place of its clip; null gives it back to the clip. @type {AvatarHandle["setPose"]} */
+  setPose(pose) {
+    if (this.avatars[0]) this.avatars[0].setPose(pose);
+    else this.#asked.pose = pose;
+  }
+
+  /** Set weights of the first avatar's expressions. @type {AvatarHandle["setExpressions"]} */
+  setExpressions(weights) {
+    if (this.avatars[0]) this.avatars[0].setExpressions(weights);
+    else this.#asked.weights = weights && { ...this.#asked.weights, ...weights };
+  }
+
+  /** Play a motion file on the first avatar; a failure is shown on the page and reported by the event `error`. @type {AvatarHandle["playClip"]} */
+  async playClip(source, options) {
+    try {
+      return await (this.avatars[0] ?? this.#asked).playClip(source, options);
+    } catch (error) {
+      this.#loading.fail(error);
+      return null;
+    }
   }
 
   /** Draw two eyes side by side, or one. */
@@ -324,13 +362,21 @@ export class MuaAvatar extends Attributed {
   #begin(/** @type {Player} */ player) {
     Object.assign(player.show, FIRST);
     player.onvr = () => this.#redraw();
+    player.onchange = () => {
+      this.#loop.pace();
+      this.#redraw();
+    };
+    player.onplayback = ({ type, clip, time }) => {
+      player.onchange?.();
+      this.dispatchEvent(new CustomEvent(type, { detail: { clip, time } }));
+    };
   }
 
   /** Draw what was loaded; what the reader has set since the `first` picture of an avatar stays. */
   async #show(/** @type {boolean} */ first) {
     for (const name of first ? ASKABLE : ["clip"]) this.#adopt(name);
     if (first) this.#arrange();
-    if (first && this.player) this.#asked.seek(this.player);
+    if (first && this.player) this.#begun(this.player);
     this.#missClip();
     this.#redraw();
     this.#fit(); // the bar has taken its place
@@ -342,6 +388,16 @@ export class MuaAvatar extends Attributed {
     }
     if (first && this.avatars.length === 1 && this.#asked.play(this.autoplay && !lessMotion())) this.play();
     this.#controls.update();
+  }
+
+  /** Let the first avatar do what was asked before it was there, or say why it cannot. */
+  #begun(/** @type {Player} */ player) {
+    try {
+      this.#asked.seek(player);
+      this.#asked.adopt(player.avatars[0]);
+    } catch (error) {
+      this.#loading.fail(error);
+    }
   }
 
   /** Let the player do what an attribute asks for, or say why it cannot. */
@@ -382,7 +438,7 @@ export class MuaAvatar extends Attributed {
 
   /** With every picture while it plays. */
   #tick(/** @type {number} */ seconds) {
-    if (!lessMotion()) this.#stage.orbit(seconds);
+    if (this.player?.playing && !lessMotion()) this.#stage.orbit(seconds);
     this.#controls.tick();
   }
 

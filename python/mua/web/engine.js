@@ -2,10 +2,12 @@
 
 import { camerasOf, FOV, framing } from "./camera.js";
 import { AvatarError } from "./error.js";
-import { described, handleOf } from "./handle.js";
+import { clipsOf, described, handleOf } from "./handle.js";
+import { LivePose } from "./live.js";
 import { load } from "./load.js";
 import { boxAround, gone, groundOf } from "./placement.js";
 import { Playback } from "./playback.js";
+import { poseFrom, weighted, weightsFrom } from "./pose.js";
 import { ProgressiveLoad } from "./progressive.js";
 import { Renderer } from "./renderer.js";
 import { VR } from "./vr.js";
@@ -13,7 +15,21 @@ import { VR } from "./vr.js";
 /** @typedef {import("./player.js").AvatarHandle} AvatarHandle */
 /** @typedef {import("./player.js").PlayerOptions} PlayerOptions */
 /** @typedef {import("./format/read.js").Avatar} Avatar */
-/** @typedef {{avatar: Avatar, handle: AvatarHandle, slot: import("./renderer.js").Slot, grounds: Map<string, number>}} Entry */
+/** @typedef {import("./clip.js").Clip} Clip */
+/**
+ * @typedef {object} Entry
+ * @property {Avatar} avatar
+ * @property {AvatarHandle} handle
+ * @property {import("./renderer.js").Slot} slot
+ * @property {Map<string, number>} grounds by what it plays
+ * @property {import("./skeleton.js").Pose | null} pose that the page has set
+ * @property {LivePose | null} live and what is decoded of it
+ * @property {boolean} fresh whether it has set something since
+ * @property {Float32Array | null} weights of expressions that the page has set
+ * @property {number} changes of these and of clips, which tell decodes apart
+ * @property {Clip[]} added by the page
+ * @property {number} asked clips so far
+ */
 
 const STUMBLE = 2000; // milliseconds; a device that is lost again so soon is given up
 const TWICE = "The graphics device was lost twice at once; reload the page to try again.";
@@ -48,7 +64,14 @@ export class Engine {
     this.frameBudget = null;
     this.follow = false;
     this.stereo = false;
-    this.playback = new Playback(() => this.entries[0]?.handle.clips ?? []);
+    this.playback = new Playback(
+      () => this.clips,
+      (type) => this.entries.length && this.onplayback?.({ type, clip: this.clip, time: this.time }),
+    );
+    /** @type {((event: import("./player.js").PlaybackEvent) => void) | null} */
+    this.onplayback = null;
+    /** @type {(() => void) | null} */
+    this.onchange = null;
     /** @type {((error: AvatarError) => void) | null} */
     this.onerror = null;
     this.request = 0; // of the next picture; 0 where the loop stands
@@ -138,15 +161,80 @@ export class Engine {
     if (!renderer) throw new AvatarError(AWAY);
     const slot = await renderer.add(avatar);
     if (this.renderer !== renderer) throw new AvatarError(AWAY); // lost meanwhile
-    const entry = part ?? { avatar, slot, grounds: new Map(), handle: handleOf(avatar, this) };
+    const entry = part ?? this.entry(avatar, slot);
     if (!part) this.entries.push(entry);
     else if (this.entries.includes(part)) renderer.replace(part.slot, slot);
     else renderer.remove(slot); // its part was taken away meanwhile
     Object.assign(entry, { avatar, slot, grounds: new Map() });
     Object.assign(entry.handle, described(avatar), { whole });
+    if (entry.added.length) this.addClips(entry);
     if (!part && this.entries.length === 1) this.frameAll();
     this.drawn = "";
     return entry;
+  }
+
+  /** @returns {Entry} */
+  entry(/** @type {Avatar} */ avatar, /** @type {import("./renderer.js").Slot} */ slot) {
+    const posed = { pose: null, live: null, fresh: false, weights: null, changes: 0, added: [], asked: 0 };
+    return { avatar, slot, grounds: new Map(), handle: handleOf(avatar, this), ...posed };
+  }
+
+  /** @type {import("./handle.js").Asks["setPose"]} */
+  setPose(handle, given) {
+    const entry = this.entryOf(handle);
+    if (!entry) return;
+    entry.pose = given && poseFrom(entry.avatar, given);
+    if (!given) entry.live = null;
+    entry.fresh = true;
+    this.onchange?.();
+  }
+
+  /** @type {import("./handle.js").Asks["setExpressions"]} */
+  setExpressions(handle, given) {
+    const entry = this.entryOf(handle);
+    if (!entry) return;
+    const weights = given && weightsFrom(entry.avatar.expressions, entry.weights, given);
+    if (String(weights) === String(entry.weights)) return;
+    entry.weights = weights;
+    entry.changes += 1;
+    entry.fresh = true;
+    this.onchange?.();
+  }
+
+  /** @type {import("./handle.js").Asks["playClip"]} */
+  async playClip(handle, source, options) {
+    const { playClip } = await import("./retarget/play.js");
+    return playClip(this, handle, source, options);
+  }
+
+  /** Let an avatar have the clips that a page has loaded, in place of its own of their names. */
+  addClips(/** @type {Entry} */ { avatar, handle, added, grounds }) {
+    const others = avatar.clips.filter((clip) => !added.some(({ name }) => name === clip.name));
+    avatar.clips = [...others, ...added];
+    handle.clips = clipsOf(avatar);
+    grounds.clear();
+  }
+
+  /** @type {import("./handle.js").Asks["retarget"]} */
+  async retarget(handle, rig, options) {
+    const { follow } = await import("./retarget/rig.js");
+    return follow(this.entryOf(handle)?.avatar, rig, options);
+  }
+
+  /** Take the poses that pages have set, as of a time of the display or the headset, milliseconds. */
+  takePoses(now = performance.now()) {
+    for (const entry of this.entries) {
+      entry.fresh = false;
+      if (!entry.pose) continue;
+      const pose = weighted(entry.pose, entry.weights);
+      if (entry.live) entry.live.sample(pose, now / 1000);
+      else entry.live = new LivePose(entry.avatar.encoding, pose, now / 1000);
+    }
+  }
+
+  /** Whether pictures change by themselves. */
+  get moving() {
+    return this.playing || this.entries.some(({ pose, live, fresh }) => pose && (fresh || !live?.settled));
   }
 
   /** @param {AvatarHandle} handle @returns {Entry | undefined} */
@@ -170,8 +258,15 @@ export class Engine {
     return this.entries.map((entry) => entry.handle);
   }
 
+  /** Those of the first avatar, and what pages have added to others. */
   get clips() {
-    return this.playback.clips;
+    const [first, ...others] = this.entries;
+    const found = [...(first?.handle.clips ?? [])];
+    for (const { handle, added } of others)
+      for (const clip of handle.clips)
+        if (added.some(({ name }) => name === clip.name) && !found.some(({ name }) => name === clip.name))
+          found.push(clip);
+    return found;
   }
 
   get clip() {
@@ -230,7 +325,7 @@ export class Engine {
   /** How far the camera has gone with the first avatar since its clip began, metres; along the ground. */
   followed() {
     const [first] = this.entries;
-    return this.follow && first ? gone(first.avatar, this.playback) : [0, 0, 0];
+    return this.follow && first ? gone(first, this.playback) : [0, 0, 0];
   }
 
   /** @returns {import("./renderer.js").Look} */
@@ -251,17 +346,28 @@ export class Engine {
     const { playback } = this;
     const exact = this.show.geometry || !(this.request || this.vr); // else the next frame is decoded ahead
     return this.entries.map((entry) => {
-      const { avatar, slot, handle } = entry;
-      const frame = playback.frameOf(avatar);
-      const following = exact ? frame : playback.followingOf(avatar);
+      const { avatar, slot, handle, live, weights } = entry;
+      const frame = live?.due ?? playback.frameOf(avatar);
+      const following = live || exact ? frame : playback.followingOf(avatar);
       const ground = this.show.shadow ? groundOf(entry, playback) : 0;
-      const spread = !exact && playback.playing;
-      return { slot, clip: playback.clipOf(avatar), frame, following, spread, place: [...handle.place], ground };
+      const spread = !exact && (live ? !live.settled : playback.playing);
+      const shown = { live, weights, stamp: entry.changes ? `\0${entry.changes}` : "", mayLag: live?.mayLag ?? false };
+      return {
+        slot,
+        clip: playback.clipOf(avatar),
+        frame,
+        following,
+        spread,
+        place: [...handle.place],
+        ground,
+        ...shown,
+      };
     });
   }
 
   async draw() {
     while (this.early) await this.early;
+    this.takePoses();
     if (this.renderer?.ready) this.drawNow();
     else await this.drawEarly();
     await this.renderer?.device.gpu.queue.onSubmittedWorkDone();
@@ -283,6 +389,7 @@ export class Engine {
   async screenshot() {
     await this.renderer?.compile();
     if (!this.renderer) throw new AvatarError(AWAY);
+    this.takePoses();
     return this.renderer.picture(this.posed(), this.look);
   }
 
@@ -303,16 +410,18 @@ export class Engine {
     this.request = requestAnimationFrame((next) => this.step(next));
     if (this.vr) return;
     this.playback.advance(now);
+    this.takePoses(now);
     this.renderer?.displays(now);
-    const frames = this.entries.map(({ avatar, handle }) => {
-      return [handle.name, this.playback.clipOf(avatar).name, this.playback.frameOf(avatar), handle.place];
+    const frames = this.entries.map(({ avatar, handle, live, changes }) => {
+      const [clip, frame] = [this.playback.clipOf(avatar).name, this.playback.frameOf(avatar)];
+      return [handle.name, ...(live ? [live.due, live.version] : [clip, frame]), changes, handle.place];
     });
     const wanted = JSON.stringify([this.look, this.screen, frames]);
     if (!this.renderer || this.early) return;
     try {
       if (wanted !== this.drawn && this.renderer.ready) this.drawNow();
       else if (wanted !== this.drawn) this.drawEarly().catch((error) => this.fail(error));
-      else if (this.playing) this.renderer.lookAhead(this.posed());
+      else if (this.moving) this.renderer.lookAhead(this.posed());
       this.drawn = wanted;
     } catch (error) {
       this.fail(error);

@@ -30,7 +30,7 @@ export class Loop {
   }
 
   get #going() {
-    return Boolean(this.avatar.player?.playing) && this.#visible && this.avatar.avatars.length > 0;
+    return Boolean(this.avatar.player?.moving) && this.#visible && this.avatar.avatars.length > 0;
   }
 
   /** Start or stop, as it plays or does not. */
@@ -56,7 +56,7 @@ export class Loop {
   /** Draw what has changed, once however often it is asked for. */
   redraw() {
     this.#changed = true;
-    if (this.#drawing || !this.avatar.player || this.avatar.player.playing) return;
+    if (this.#drawing || !this.avatar.player || this.avatar.player.moving) return;
     this.#drawing = true;
     requestAnimationFrame(() => void this.#drawChanged());
   }
@@ -71,7 +71,7 @@ export class Loop {
   async #drawChanged() {
     const { player } = this.avatar;
     try {
-      while (this.#changed && this.avatar.player && !this.avatar.player.playing) await this.draw();
+      while (this.#changed && this.avatar.player && !this.avatar.player.moving) await this.draw();
     } catch (error) {
       if (this.avatar.player === player) this.asks.fail(error); // not of one that was given back meanwhile
     } finally {

@@ -2,6 +2,7 @@
 
 import { sample } from "./clip.js";
 import { groundHeight } from "./overlays.js";
+import { stillClip } from "./playback.js";
 import { world } from "./skeleton.js";
 
 /** @typedef {import("./engine.js").Entry} Entry */
@@ -14,27 +15,37 @@ export function boxAround(/** @type {Entry[]} */ entries, /** @type {Playback} *
   return [0, 1, 2, 3, 4, 5].map((i) => (i < 3 ? Math.min : Math.max)(...boxes.map((one) => one[i])));
 }
 
-function boxOf(/** @type {Entry} */ { avatar, handle }, /** @type {Playback} */ playback) {
-  const root = rootAt(avatar, playback, playback.frameOf(avatar));
+function boxOf(/** @type {Entry} */ entry, /** @type {Playback} */ playback) {
+  const { avatar, handle } = entry;
+  const root = rootOf(avatar, poseAt(entry, playback));
   return Array.from(avatar.bounds, (value, i) => value + root[i % 3] + handle.place[i % 3]);
 }
 
-/** How far an avatar has gone since its clip began, metres; along the ground. */
-export function gone(/** @type {Avatar} */ avatar, /** @type {Playback} */ playback) {
-  const [now, start] = [playback.frameOf(avatar), 0].map((frame) => rootAt(avatar, playback, frame));
+/** How far an avatar has gone since its clip, or the page that poses it, began, metres; along the ground. */
+export function gone(/** @type {Entry} */ entry, /** @type {Playback} */ playback) {
+  const { avatar, live } = entry;
+  const poses = [poseAt(entry, playback), live?.first ?? poseAt(entry, playback, 0)];
+  const [now, start] = poses.map((pose) => rootOf(avatar, pose));
   return [now[0] - start[0], 0, now[2] - start[2]];
 }
 
+/** The pose that a page has set, else that of a frame of the clip, the present one if left out. */
+function poseAt(
+  /** @type {Entry} */ { avatar, live },
+  /** @type {Playback} */ playback,
+  frame = playback.frameOf(avatar),
+) {
+  return live?.current ?? sample(avatar.skeleton, playback.clipOf(avatar), frame, avatar.encoding.rate);
+}
+
 /** Place of the root joint, metres. */
-function rootAt(/** @type {Avatar} */ avatar, /** @type {Playback} */ playback, /** @type {number} */ frame) {
-  const { skeleton, encoding } = avatar;
-  const pose = sample(skeleton, playback.clipOf(avatar), frame, encoding.rate);
+function rootOf(/** @type {Avatar} */ { skeleton }, /** @type {import("./skeleton.js").Pose} */ pose) {
   return world(skeleton, pose).places.subarray(3 * skeleton.root, 3 * skeleton.root + 3);
 }
 
-/** Height on which an avatar stands in what it plays, metres. */
-export function groundOf(/** @type {Entry} */ { avatar, grounds }, /** @type {Playback} */ playback) {
-  const clip = playback.clipOf(avatar);
+/** Height on which an avatar stands in what it plays; of poses that a page sets, in its bind pose; metres. */
+export function groundOf(/** @type {Entry} */ { avatar, grounds, live }, /** @type {Playback} */ playback) {
+  const clip = live ? stillClip(avatar) : playback.clipOf(avatar);
   const ground = grounds.get(clip.name) ?? groundHeight(avatar, clip);
   grounds.set(clip.name, ground);
   return ground;

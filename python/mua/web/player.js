@@ -31,7 +31,8 @@ export { AvatarError, offersVR };
  */
 
 /** @typedef {"auto" | "full" | number} Level of detail: by the distance, the finest, or texels along a side of the texture */
-/** @typedef {{name: string, seconds: number, frames: number}} ClipInfo */
+/** @typedef {{name: string, seconds: number, frames: number, loop: boolean}} ClipInfo loop: whether it starts over at its end */
+/** @typedef {{type: "play" | "pause" | "loop" | "end", clip: string | null, time: number}} PlaybackEvent loop: the clip starts over; end: one that does not has ended, and rests at its last frame */
 /** @typedef {[[number, number, number], [number, number, number]]} Box lowest and highest corner, metres */
 
 /**
@@ -46,8 +47,26 @@ export { AvatarError, offersVR };
  * @property {[number, number, number]} place where it stands, world, metres; may be set
  * @property {number} outsideTraining share of the pose last decoded that training did not show, 0 to 1; 0 before the first
  *   picture. Beyond about a half, folds and colours are close to their mean
+ * @property {SkeletonInfo} skeleton
+ * @property {readonly string[]} expressions names; empty where the file has none
+ * @property {(pose: PoseInput | null) => void} setPose shows this pose in place of the clip, until the next one; null gives the avatar
+ *   back to its clip. Throws an AvatarError where the pose is wrong
+ * @property {(weights: Readonly<Record<string, number>> | null) => void} setExpressions sets weights by name, whatever else moves the
+ *   avatar; those that are left out stay, null forgets all. Throws an AvatarError where a name or weight is wrong
+ * @property {(source: MotionSource, options?: PlayClipOptions) => Promise<PlayedClip | null>} playClip retargets a BVH, glTF, GLB, VRM or
+ *   VRMA file and plays it; null where the avatar was taken away, or another clip asked for, meanwhile. Rejects with an AvatarError
+ * @property {(rig: RigInfo, options?: {mapping?: Record<string, string>}) => Promise<Follow>} retarget what turns poses of another
+ *   figure's skeleton into poses of this avatar. Rejects with an AvatarError
  * @property {() => void} remove gives its memory back; may be called twice
  */
+
+/** @typedef {import("./retarget/types.js").SkeletonInfo} SkeletonInfo */
+/** @typedef {import("./retarget/types.js").PoseInput} PoseInput */
+/** @typedef {import("./retarget/types.js").MotionSource} MotionSource */
+/** @typedef {import("./retarget/types.js").PlayClipOptions} PlayClipOptions */
+/** @typedef {import("./retarget/types.js").PlayedClip} PlayedClip */
+/** @typedef {import("./retarget/types.js").RigInfo} RigInfo */
+/** @typedef {import("./retarget/types.js").Follow} Follow */
 
 /**
  * @typedef {object} LoadOptions
@@ -69,8 +88,9 @@ export { AvatarError, offersVR };
  * @property {readonly AvatarHandle[]} avatars
  * @property {string | null} clip name of the clip that plays; null where no avatar holds one
  * @property {number} time seconds within the clip; setting it scrubs
- * @property {readonly ClipInfo[]} clips of the first avatar
+ * @property {readonly ClipInfo[]} clips of the first avatar, and what pages have added to others
  * @property {boolean} playing
+ * @property {boolean} moving whether pictures change by themselves: it plays, or a pose that was set has not come to rest
  * @property {number} speed 1 plays at the recorded speed
  * @property {CameraState} camera may be changed in place; the next picture follows
  * @property {(chosen?: readonly AvatarHandle[]) => void} frameAll puts the camera where all avatars, or those that are chosen, are in the picture
@@ -95,6 +115,8 @@ export { AvatarError, offersVR };
  * @property {string} adapter what the browser says of the device
  * @property {() => void} dispose gives all memory back; the player is of no more use
  * @property {((error: AvatarError) => void) | null} onerror what went wrong while nobody waited
+ * @property {((event: PlaybackEvent) => void) | null} onplayback it begins or ceases to play, or a clip starts over or ends
+ * @property {(() => void) | null} onchange a pose, expressions or a clip was set; who draws without `start` draws anew
  */
 
 /**

@@ -15,6 +15,7 @@ import { areCompiled, kernelsOf } from "./kernel.js";
 import { Levels, levelsOf } from "./levels.js";
 import { Overlays } from "./overlays.js";
 import { readPicture } from "./picture.js";
+import { weighted } from "./pose.js";
 import { COLOR, DEPTH, Scene } from "./scene.js";
 import { giveBack, takeDevice } from "./shared.js";
 import { PROJECTING, reach, SORTING, SplatFrame } from "./splats.js";
@@ -22,11 +23,27 @@ import { Timing } from "./timing.js";
 import { BlendVertices } from "./wgsl/dq_skinning.js";
 
 /** @typedef {import("./format/read.js").Avatar} Avatar */
-/** @typedef {import("./format/read.js").Clip} Clip */
+/** @typedef {import("./clip.js").Clip} Clip */
+/** @typedef {import("./live.js").LivePose} LivePose */
 /** @typedef {{memory: Memory, frame: AvatarFrame, overlays: Overlays, levels: Levels, decoded: import("./skeleton.js").Pose | null, standing: string}} Slot an avatar on the device, the newest pose of its last decode, and how it stands */
-/** @typedef {{slot: Slot, clip: Clip, frame: number, following: number, spread: boolean, place: number[], ground: number}} Posed what a picture shows of one, and whether a decode may come later than its frame */
+/**
+ * @typedef {object} Posed what a picture shows of one
+ * @property {Slot} slot
+ * @property {Clip} clip
+ * @property {number} frame of the clip, or the number of a window
+ * @property {number} following to be decoded before it is due
+ * @property {LivePose | null} live where a page sets the pose, in place of the clip
+ * @property {Float32Array | null} weights of expressions that a page has set
+ * @property {string} stamp changes with what a page sets
+ * @property {boolean} spread whether a decode may come later than its frame
+ * @property {boolean} mayLag whether it may where the avatar is alone
+ * @property {number[]} place
+ * @property {number} ground
+ */
 /** @typedef {{compile: () => Promise<void>}} Compiled */
 /** @typedef {{camera: import("./player.js").CameraState, stereo: boolean, show: import("./player.js").Show, level: import("./player.js").Level, budget: number | null, frameBudget: number | null}} Look */
+
+const POSED = "\0"; // no clip's name
 
 export class Renderer {
   /** @returns {Promise<Renderer>} */
@@ -249,9 +266,9 @@ export class Renderer {
     this.cameras = cameras;
     const changed = this.decode(pass, posed, levels, cameras);
     for (const [i, one] of posed.entries()) {
-      const { slot, clip, frame, place, ground } = one;
+      const { slot, frame, place, ground } = one;
       const { standing } = slot;
-      slot.standing = [clip.name, frame, ...place, ground].join();
+      slot.standing = [nameOf(one), one.live?.version, frame, ...place, ground].join();
       if (!changed.has(slot) && slot.standing === standing) continue;
       slot.frame.repose(pass, poses[i], place);
       slot.overlays.pose(ground + place[1]);
@@ -266,9 +283,10 @@ export class Renderer {
   /** Append what a displayed frame decodes of the avatars in view; those of which other channels are shown. @param {GPUComputePassEncoder} pass @param {Posed[]} posed @param {number[]} levels @param {import("./camera.js").Camera[]} cameras */
   decode(pass, posed, levels, cameras) {
     const asked = posed.map((one, i) => {
-      const { slot, clip, frame, following, place } = one;
-      const [due, next] = [frame, following].map((at) => ({ clip: clip.name, frame: at }));
-      const ask = { due, following: next, level: levels[i], rank: 0, spread: one.spread && slot.decoded !== null };
+      const { slot, frame, following, place, mayLag } = one;
+      const [due, next] = [frame, following].map((at) => ({ clip: nameOf(one), frame: at }));
+      const spread = one.spread && slot.decoded !== null;
+      const ask = { due, following: next, level: levels[i], rank: 0, spread, mayLag };
       let seen = true;
       if (posed.length > 1 && ask.spread) {
         const box = slot.levels.box(poseOf(one), place);
@@ -315,13 +333,18 @@ function compiled(/** @type {Record<string, Compiled> | Compiled[]} */ parts) {
 }
 
 /** The pose in which an avatar is shown. @returns {import("./skeleton.js").Pose} */
-function poseOf(/** @type {Posed} */ { slot, clip, frame }) {
+function poseOf(/** @type {Posed} */ { slot, clip, frame, live, weights }) {
   const { skeleton, encoding } = slot.frame.buffers.avatar;
-  return sample(skeleton, clip, frame, encoding.rate);
+  return live?.current ?? weighted(sample(skeleton, clip, frame, encoding.rate), weights);
 }
 
 /** The poses that end at a moment of what is shown. @returns {import("./decodes.js").Window} */
-function windowOf(/** @type {Posed} */ { slot, clip }) {
+function windowOf(/** @type {Posed} */ { slot, clip, live, weights }) {
   const { skeleton, encoding } = slot.frame.buffers.avatar;
-  return ({ frame }) => window(skeleton, clip, frame, encoding);
+  return ({ frame }) => live?.window ?? window(skeleton, clip, frame, encoding).map((pose) => weighted(pose, weights));
+}
+
+/** What tells frames of a clip from those of others, and from windows that a page sets. */
+function nameOf(/** @type {Posed} */ { clip, live, stamp }) {
+  return live ? POSED : `${clip.name}${stamp}`;
 }

@@ -3,7 +3,7 @@
 import { conjugate, dualFromRigid, dualMultiply, multiply, rotate } from "./rotation.js";
 
 /** @typedef {{parents: Int32Array, bindRotations: Float64Array, bindTranslations: Float64Array}} Bones */
-/** @typedef {{rotations: Float64Array, translations: Float64Array}} Pose local, [J, 4] unit and [J, 3] metres */
+/** @typedef {{rotations: Float64Array, translations: Float64Array, expressions?: Float32Array}} Pose local, [J, 4] unit and [J, 3] metres; weights [E] of the avatar's expressions, all 0 where left out */
 
 /** Joint-to-world rotations [J, 4] and positions [J, 3]: forward kinematics. */
 export function world(/** @type {Bones} */ skeleton, /** @type {Pose} */ pose) {

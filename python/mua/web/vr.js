@@ -43,6 +43,7 @@ export class VR {
       room: this.standing(),
       draw: (now, picture, eyes) => {
         engine.playback.advance(now);
+        engine.takePoses(now);
         engine.renderer?.displays(now);
         engine.renderer?.submit(picture, engine.posed(), engine.look, eyes);
       },

@@ -24,6 +24,9 @@ function begun(more = {}) {
     going: false,
     start: () => (player.going = true),
     stop: () => (player.going = false),
+    get moving() {
+      return player.playing;
+    },
     draw: async () => void (reported.drawn += 1),
     ...more,
   };

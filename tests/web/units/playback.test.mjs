@@ -5,17 +5,21 @@ import { test } from "node:test";
 import { Playback } from "../../../python/mua/web/playback.js";
 
 const RATE = 30;
-const clip = (name, frames) => ({ name, rate: RATE, frames });
+const clip = (name, frames, loop) => ({ name, rate: RATE, frames, loop });
 const avatarOf = (...clips) => ({ clips, encoding: { rate: RATE } });
 const WALK = avatarOf(clip("walk", 60), clip("wave", 30));
 const OTHER = avatarOf(clip("sit", 15), clip("wave", 45));
 
-/** The playback of avatars, the first of which says which clips there are. */
+/** The playback of avatars, the first of which says which clips there are, and what it has told. */
 function playing(...avatars) {
-  const clips = avatars[0].clips.map(({ name, frames }) => ({ name, frames, seconds: frames / RATE }));
-  const playback = new Playback(() => clips);
+  const clips = avatars[0].clips.map(({ name, frames, loop }) => ({ name, frames, seconds: frames / RATE, loop }));
+  const told = [];
+  const playback = new Playback(
+    () => clips,
+    (what) => told.push([what, playback.frameOf(avatars[0])]),
+  );
   playback.begin(0);
-  return playback;
+  return Object.assign(playback, { told });
 }
 
 test("a negative speed plays backward, from the first frame to the last", () => {
@@ -71,4 +75,67 @@ test("a pose of no time stands at the first frame", () => {
     playback.time = time;
     assert.equal(playback.frameOf(WALK), 0);
   }
+});
+
+/** Let time go on in steps of 100 ms. */
+function go(playback, steps, from = 0) {
+  for (let i = 1; i <= steps; i++) playback.advance(from + 100 * i);
+}
+
+test("each pass of a clip that starts over is told once, forward and backward", () => {
+  for (const speed of [1, -1]) {
+    const playback = playing(WALK);
+    playback.speed = speed;
+    go(playback, 45);
+    assert.deepEqual(
+      playback.told.map(([what]) => what),
+      speed > 0 ? ["loop", "loop"] : ["loop", "loop", "loop"], // backward, the first step leaves the start
+    );
+  }
+});
+
+test("a clip that does not start over ends at its last frame, once, and plays from its start when it is asked to", () => {
+  const once = avatarOf(clip("jump", 30, false));
+  const playback = playing(once);
+  go(playback, 15);
+  assert.deepEqual([playback.told, playback.playing, playback.frameOf(once)], [[["end", 29]], false, 29]);
+  playback.playing = true;
+  playback.advance(1540);
+  assert.deepEqual([playback.told.slice(1), playback.frameOf(once)], [[["play", 0]], 1]);
+});
+
+test("backward, it ends at its first frame and plays from its last", () => {
+  const once = avatarOf(clip("jump", 30, false));
+  const playback = playing(once);
+  playback.speed = -1;
+  playback.time = 0.35;
+  go(playback, 5);
+  assert.deepEqual([playback.told, playback.frameOf(once)], [[["end", 0]], 0]);
+  playback.playing = true;
+  assert.equal(playback.frameOf(once), 29);
+});
+
+test("one that has ended and is moved plays on from there", () => {
+  const once = avatarOf(clip("jump", 30, false));
+  const playback = playing(once);
+  go(playback, 15);
+  playback.time = 0.5;
+  playback.playing = true;
+  assert.equal(playback.frameOf(once), 15);
+});
+
+test("playing and pausing are told where they change something", () => {
+  const playback = playing(WALK);
+  for (const now of [true, false, false, true]) playback.playing = now;
+  playback.time = 3; // going elsewhere is no pass of the clip
+  assert.deepEqual(
+    playback.told.map(([what]) => what),
+    ["pause", "play"],
+  );
+});
+
+test("a clip of one frame neither starts over nor ends", () => {
+  const playback = playing(avatarOf(clip("still", 1, false)));
+  go(playback, 5);
+  assert.deepEqual([playback.told, playback.playing], [[], true]);
 });

@@ -29,6 +29,7 @@ function engineOf(...places) {
     drawn: "what the canvas shows",
     way: [0, 0, 0],
     followed: () => engine.way,
+    takePoses() {},
     renderer: { device: "device", displays() {}, submit: (...given) => noted.submitted.push(given) },
     posed: () => "posed",
     look: "look",

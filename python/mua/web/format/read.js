@@ -21,7 +21,7 @@ const APPEARANCE_CHANNELS = 12;
 const PNG_SIGNATURE = [0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a];
 
 /** @typedef {ReturnType<typeof decode>} Avatar what a file holds; arrays are views of its bytes where they can be */
-/** @typedef {ReturnType<typeof readClip>} Clip */
+/** @typedef {import("../clip.js").Clip} Clip */
 /** @typedef {ReturnType<typeof readEncoding>} Encoding */
 
 /** The avatar in a file's bytes. @throws {import("../error.js").AvatarError} that names the field */
@@ -87,7 +87,9 @@ function decode(/** @type {Tree} */ tree) {
   const thumbnail = readThumbnail(tree.thumbnail);
   const surface = readSurface(tree.surface, texels);
   const model = { skeleton, encoding, wavelet, coarse, template, texels, geometry, appearance, surface };
-  return { name, producer, notes, ...model, clips, bounds, thumbnail };
+  /** @type {string[]} */
+  const expressions = tree.expressions?.names ?? []; // what they move is not drawn here yet
+  return { name, producer, notes, ...model, clips, bounds, thumbnail, expressions };
 }
 
 function readEncoding(/** @type {Tree} */ tree, /** @type {Skeleton} */ skeleton) {
@@ -135,6 +137,7 @@ function readRate(/** @type {Tree} */ tree, /** @type {string} */ path) {
 function readClips(/** @type {Tree[]} */ trees, /** @type {Skeleton} */ skeleton, /** @type {number} */ encodingRate) {
   let added = 0;
   return trees.map((tree, i) => {
+    /** @type {Clip} */
     const clip = readClip(tree, `clips[${i}]`, skeleton);
     const times = Math.max(encodingRate / clip.rate, 1);
     added += (times - 1) * clip.frames * skeleton.names.length;
