@@ -13,7 +13,7 @@ from replay import replay
 from mua.gpu import Device
 
 KERNELS = ROOT / "ComputeShaders"
-CASES = 32
+CASES = 35
 ASSEMBLIES = ("UnityEngine", "UnityEditor", "UnityEngine.TestRunner", "nunit.framework", "Mua.Format", "Mua.Motion")
 OURS = ("Mua.Avatar", "Mua.Avatar.SelfTest", "Mua.Avatar.Editor", "Mua.Avatar.Tests", "Mua.Avatar.Editor.Tests")
 Reports = dict[str, list[str]]
