@@ -104,6 +104,7 @@ def motion(tmp_path: Path) -> Path:
         (("--background", "#204060"), ()),
         (("--show", "skeleton"), ()),
         (("--level", "8"), ()),
+        (("--expressions", "jawOpen=1"), ()),
         (("--stereo",), ()),
         (("--ipd", "0.5"), ("--stereo",)),
         (("--frame", "6"), ()),
@@ -225,6 +226,7 @@ def test_a_file_shows_the_clip_level_motion_and_mapping_asked_for(
         for options in (
             ("--frame", 3),
             ("--frame", 3, "--level", "8"),
+            ("--frame", 3, "--expressions", "jawOpen=1,Mund auf=0.5"),
             (*nod, motion.with_name("tip.json")),
             (*nod, motion.with_name("middle.json")),
         )

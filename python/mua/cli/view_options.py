@@ -13,6 +13,7 @@ from mua.cli.option_values import (
     listed,
     parse_angle,
     parse_color,
+    parse_expressions,
     parse_ipd,
     parse_level,
     parse_screen,
@@ -109,6 +110,13 @@ class Asked:
             default=f"{IN_FILES.level}, window {IN_WINDOW.level}",
         ),
     ] = None
+    expressions: Annotated[
+        str | None,
+        Option(
+            "Weights of expressions, such as jawOpen=0.7,eyeBlinkLeft=1; mua-inspect lists their names.",
+            default="those of the clip",
+        ),
+    ] = None
 
 
 def kind_of(output: Path | None, *, turntable: bool) -> Kind:
@@ -179,4 +187,5 @@ def look_of(asked: Asked, output: Path | None) -> Look:
     )
     color = parse_color(asked.background or left_out.background, output)
     toggles = parse_toggles(asked.show or left_out.show)
-    return Look(shot, toggles, color, parse_level(asked.level or left_out.level, geometry=toggles.geometry))
+    level = parse_level(asked.level or left_out.level, geometry=toggles.geometry)
+    return Look(shot, toggles, color, level, parse_expressions(asked.expressions or ""))

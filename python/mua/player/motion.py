@@ -1,6 +1,7 @@
 """The motion that an avatar plays: a clip of its file, or motion from another file."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -94,3 +95,19 @@ def with_weights(
     held = np.zeros(len(names)) if weights is None else np.array(weights, dtype=float)
     held[list(known)] = list(known.values())
     return held
+
+
+def expressed(clip: Clip, names: Sequence[str], named: Mapping[str, float]) -> Clip:
+    """The clip with these weights in all of its frames."""
+    if not named:
+        return clip
+    frames = [with_weights(names, clip.pose(index).expressions, named) for index in range(len(clip))]
+    return replace(clip, expressions=np.stack([frame for frame in frames if frame is not None]))
+
+
+def require_expressions(names: Sequence[str], named: Mapping[str, float], *, file: Path) -> None:
+    """Raises InputError for an expression that the avatar of a file does not have."""
+    for name in named:
+        if name not in names:
+            held = ", ".join(names) or "no expressions"
+            raise InputError(f"--expressions has {name!r}; {file} has {held}")
