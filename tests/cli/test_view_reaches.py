@@ -236,6 +236,19 @@ def test_a_file_shows_the_clip_level_motion_and_mapping_asked_for(
     np.testing.assert_array_equal(again, pictures[0])  # the clip twice over has no 10th frame but there
 
 
+def test_a_face_of_another_file_plays_beside_the_body(
+    command: Commands, avatar_files: tuple[Path, ...], tmp_path: Path, opened: Callable[..., Opened]
+) -> None:
+    face = tmp_path / "speech.csv"
+    rows = [f"00:00:00:{frame:02}.000,61,{frame / 20}" for frame in range(20)]
+    face.write_text("\n".join(["Timecode,BlendShapeCount,JawOpen", *rows]))
+    plain, speaking = (image(command, avatar_files[1], "--frame", 6, *more) for more in ((), ("--face", face)))
+    assert (plain != speaking).any()
+    held = opened(*SIZE, "--frame", "6", "--face", str(face)).session.expressions
+    assert 0 < held["jawOpen"] < 1
+    assert not any(weight for name, weight in held.items() if name != "jawOpen")
+
+
 def test_a_file_is_drawn_by_the_device_asked_for(
     command: Commands, avatar_file: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -201,7 +201,7 @@ FAULTS = {
         Fault("shear lost", "(after.shear - along * before.shear)", "0 * (after.shear - along * before.shear)"),
         Fault("stretched inversely", "after.height / before.height", "before.height / after.height"),
         Fault("thickness lost", "stretched + before.normal[i] * after.normal", "stretched"),
-        Fault("half turns by the first formula", "if (other.z > most)", "if (false)"),
+        Fault("half turns about another axis", "- z.z, y.z + z.y", "- z.z, y.z - z.y"),
         Fault("sign of a turn", "y.z - z.y, z.x - x.z", "z.y - y.z, z.x - x.z"),
         Fault("turned half round", "(found.x < 0 ? -1 : 1) *", "2 *"),
         Fault("stretch without bound", "clamp(length(stretched), 1 / MOST_STRETCH, MOST_STRETCH)", "length(stretched)"),

@@ -93,7 +93,7 @@ def _levels(avatar: Avatar, look: Look) -> Levels:
 def _chosen(avatar: Avatar, source: Source) -> Clip:
     """The clip to show; notes of the retargeting go to standard error."""
     file = source.files[0]
-    clips, notes = player_clips(avatar, file, motion=source.motion, mapping=source.mapping)
+    clips, notes = player_clips(avatar, file, motion=source.motion, mapping=source.mapping, face=source.face)
     for note in notes:
         typer.echo(note, err=True)
     return named_clip(clips, source.clip, source=source.motion or file)

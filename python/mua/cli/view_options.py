@@ -22,6 +22,7 @@ from mua.cli.option_values import (
 )
 from mua.errors import InputError
 from mua.files.inputs import require_file, require_motion
+from mua.motion.formats import require_face
 from mua.option import Option
 from mua.player.levels import AUTO, FULL
 from mua.player.shot import Look, Shot
@@ -160,7 +161,7 @@ def check_together(named: Set[str]) -> None:
             raise InputError(f"{option}: works only without --listen, which shows what another program sends")
 
 
-def check_inputs(files: list[Path], output: Path | None, motion: Path | None) -> None:
+def check_inputs(files: list[Path], output: Path | None, motion: Path | None, face: Path | None) -> None:
     """Raises InputError for a file that is not there, or more of them than an image shows."""
     if output is not None and len(files) > 1:
         raise InputError(f"-o is {output}; expected one FILE, found {len(files)}")
@@ -168,6 +169,8 @@ def check_inputs(files: list[Path], output: Path | None, motion: Path | None) ->
         require_file(file)
     if motion is not None:
         require_motion(motion)
+    if face is not None:
+        require_face(face)
 
 
 def look_of(asked: Asked, output: Path | None) -> Look:

@@ -11,6 +11,7 @@ from mua.asset.avatar import Avatar
 from mua.errors import InputError
 from mua.live.live import Live
 from mua.live.receiver import Receiver
+from mua.motion.face import with_face
 from mua.motion.load import counted, load_motions, unique_names
 from mua.pose.clip import Clip
 from mua.pose.resample import resample
@@ -24,11 +25,23 @@ def player_clips(
     *,
     motion: Path | None,
     mapping: Mapping[str, str] | None,
+    face: Path | None = None,
 ) -> tuple[list[Clip], tuple[str, ...]]:
     """All clips of `motion`, or of the avatar's own file, at the avatar's rate; and notes for the user.
 
-    Errors: InputError where there is none, or where no joint of `motion` matches.
+    With `face`, each has the facial motion of that file.
+    Errors: InputError where there is none, or where no joint of `motion` or expression of `face` matches.
     """
+    clips, notes = _body_clips(avatar, file, motion=motion, mapping=mapping)
+    if face is None:
+        return clips, notes
+    faces, unused = with_face(clips, face, avatar.expressions)
+    return faces, (*notes, *unused)
+
+
+def _body_clips(
+    avatar: Avatar, file: Path, *, motion: Path | None, mapping: Mapping[str, str] | None
+) -> tuple[list[Clip], tuple[str, ...]]:
     rate = avatar.encoding.rate
     if motion is not None:
         loaded = load_motions(motion, avatar.rig.skeleton, mapping=mapping, rate=rate, expressions=avatar.expressions)

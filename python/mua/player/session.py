@@ -77,8 +77,8 @@ class Stage:
 def _clips(source: Source, avatar: Avatar, file: Path, live: Live | None) -> tuple[list[Clip], tuple[str, ...]]:
     """The clips to choose from, first the one that stands for a live pose, and notes."""
     if live is None:
-        return player_clips(avatar, file, motion=source.motion, mapping=source.mapping)
-    clips, notes = player_clips(avatar, file, motion=None, mapping=None) if avatar.clips else ([], ())
+        return player_clips(avatar, file, motion=source.motion, mapping=source.mapping, face=source.face)
+    clips, notes = player_clips(avatar, file, motion=None, mapping=None, face=source.face) if avatar.clips else ([], ())
     return [stance(live, avatar.encoding.rate), *clips], notes
 
 
