@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from commands import Commands, Ended
 from shared_data import SharedData
-from synthetic_avatar import synthetic_avatar
+from synthetic_avatar import synthetic_avatar, with_expressions
 
 import mua.cli  # noqa: F401 first of all: it sets how torch's threads wait
 from mua.asset import write
@@ -68,12 +68,12 @@ def avatar_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="session")
 def avatar_files(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, ...]:
-    """Two avatars, the second with one clip more, and a broken one."""
+    """Two avatars, the second with one clip more and a face, and a broken one."""
     directory, avatar = tmp_path_factory.mktemp("avatars"), synthetic_avatar(1)
     clip = avatar.clips[0]
     longer = Clip("twice", clip.rate, np.tile(clip.rotations, (2, 1, 1)), np.tile(clip.translations, (2, 1, 1)))
     write(directory / "first.muaavatar", synthetic_avatar(0))
-    write(directory / "second.muaavatar", replace(avatar, clips=(clip, longer)))
+    write(directory / "second.muaavatar", replace(with_expressions(avatar), clips=(clip, longer)))
     (directory / "broken.muaavatar").write_bytes(b"not an avatar")
     return tuple(directory / f"{name}.muaavatar" for name in ("first", "second", "broken"))
 

@@ -104,6 +104,7 @@ def motion(tmp_path: Path) -> Path:
         (("--background", "#204060"), ()),
         (("--show", "skeleton"), ()),
         (("--level", "8"), ()),
+        (("--expressions", "jawOpen=1"), ()),
         (("--stereo",), ()),
         (("--ipd", "0.5"), ("--stereo",)),
         (("--frame", "6"), ()),
@@ -225,6 +226,7 @@ def test_a_file_shows_the_clip_level_motion_and_mapping_asked_for(
         for options in (
             ("--frame", 3),
             ("--frame", 3, "--level", "8"),
+            ("--frame", 3, "--expressions", "jawOpen=1,Mund auf=0.5"),
             (*nod, motion.with_name("tip.json")),
             (*nod, motion.with_name("middle.json")),
         )
@@ -232,6 +234,19 @@ def test_a_file_shows_the_clip_level_motion_and_mapping_asked_for(
     assert len({picture.tobytes() for picture in pictures}) == len(pictures)
     again = image(command, avatar_files[1], "--clip", "twice", "--frame", 10)
     np.testing.assert_array_equal(again, pictures[0])  # the clip twice over has no 10th frame but there
+
+
+def test_a_face_of_another_file_plays_beside_the_body(
+    command: Commands, avatar_files: tuple[Path, ...], tmp_path: Path, opened: Callable[..., Opened]
+) -> None:
+    face = tmp_path / "speech.csv"
+    rows = [f"00:00:00:{frame:02}.000,61,{frame / 20}" for frame in range(20)]
+    face.write_text("\n".join(["Timecode,BlendShapeCount,JawOpen", *rows]))
+    plain, speaking = (image(command, avatar_files[1], "--frame", 6, *more) for more in ((), ("--face", face)))
+    assert (plain != speaking).any()
+    held = opened(*SIZE, "--frame", "6", "--face", str(face)).session.expressions
+    assert 0 < held["jawOpen"] < 1
+    assert not any(weight for name, weight in held.items() if name != "jawOpen")
 
 
 def test_a_file_is_drawn_by_the_device_asked_for(

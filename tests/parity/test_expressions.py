@@ -29,15 +29,16 @@ HALF = 2.0**-MANTISSA_BITS  # of a half float, rounded either way
 
 
 def summed(device: Device, targets: Targets, weights: Array, mesh: Array) -> tuple[Array, Array]:
-    """How far the vertices moved and where they are then, by the kernel."""
+    """How far the vertices moved and where they are then, by the kernel; beyond the last entry stands a vertex more."""
+    beyond = np.setdiff1d(np.arange(len(mesh)), targets.vertices)[:1]
     found = run(
         device,
         FILE,
         "SumTargets",
         (-(-len(targets.vertices) // EXPRESSED), 1, 1),
         {
-            "vertices": targets.vertices.astype(np.uint32),
-            "starts": targets.starts.astype(np.uint32),
+            "vertices": np.append(targets.vertices, beyond).astype(np.uint32),
+            "starts": np.append(targets.starts, targets.starts[-1]).astype(np.uint32),
             "expressions": targets.expressions.astype(np.uint32),
             "offsets": targets.offsets,
             "weights": weights,

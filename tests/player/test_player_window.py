@@ -17,6 +17,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from imgui_bundle import imgui
 from PIL import ImageGrab
 from rendercanvas.offscreen import RenderCanvas
 from vmc_senders import Program, bundle
@@ -201,6 +202,49 @@ def test_shows_and_hides_by_the_boxes_of_the_panel(window: Driven) -> None:
             field.name for field in fields(Toggles) if getattr(before, field.name) != getattr(after, field.name)
         }
     assert changed == {field.name for field in fields(Toggles)}
+
+
+def test_sliders_move_the_face_until_the_clip_does(
+    device: Device, avatar_files: tuple[Path, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(imgui, "collapsing_header", lambda label: label.startswith("Expressions"))
+    window = Driven(device, avatar_files[1:2])
+    moved: set[str] = set()
+    ended = False
+    before = window.picture()[:, WIDTH + 20 :]
+    for y in range(140, 324, 8):  # wherever the sliders lie, and the button below them
+        window.click(90, y)
+        if window.session.weights:
+            shown = window.session.expressions
+            assert all(0 <= weight <= 1 for weight in shown.values())
+            moved |= {name for name, weight in shown.items() if weight > 0}
+        ended |= bool(moved) and not window.session.weights
+        if moved == {"jawOpen"}:
+            assert (window.picture()[:, WIDTH + 20 :] != before).any()
+    assert moved == {"jawOpen", "eyeBlinkLeft", "nothing", "Mund auf"}
+    assert ended
+    window.canvas.close()
+
+
+def test_the_list_of_expressions_is_narrowed_by_a_search(
+    device: Device, avatar_files: tuple[Path, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    listed: list[str] = []
+    slider = imgui.slider_float
+
+    def noting(label: str, *given: Any) -> Any:
+        listed.append(label)
+        return slider(label, *given)
+
+    monkeypatch.setattr(imgui, "collapsing_header", lambda label: label.startswith("Expressions"))
+    monkeypatch.setattr(imgui, "slider_float", noting)
+    window = Driven(device, avatar_files[1:2])
+    for search, found in (("", 4), ("EYE", 1), ("a", 2)):
+        window.session.search = search
+        listed.clear()
+        window.picture()
+        assert len(set(listed) - {"speed"}) == found
+    window.canvas.close()
 
 
 def test_changes_the_picture_with_every_toggle(window: Driven) -> None:

@@ -15,7 +15,7 @@ from mua.characters.formats import require_scene
 from mua.errors import InputError
 from mua.files.inputs import is_capture, require_file, require_motion, require_teacher
 from mua.files.write import missing_directory
-from mua.motion.formats import require_format
+from mua.motion.formats import require_face, require_format
 from mua.motion.mapping import read_mapping
 from mua.student.settings import Budget, Settings, preset, with_recipe
 from mua.teachers.trained.settings import teacher_preset
@@ -57,14 +57,6 @@ def student_settings(options: Mapping[str, Any]) -> Settings:
     overrides = {name: options[name] for name in ("frames", "texels") if options.get(name) is not None}
     budget = Budget(mflop=options["budget_mflop"], mb=options["budget_mb"])
     return replace(with_recipe(settings, options["recipe"]), budget=budget, **overrides)
-
-
-def require_face(face: Path) -> None:
-    """Raises InputError for a file that is not there or of a format that holds no face."""
-    if not face.is_file():
-        raise InputError(f"--face {face}: there is no such file")
-    if face.suffix.lower() != ".csv":
-        require_format(face)
 
 
 def _check_motion_options(settings: BakeSettings) -> None:

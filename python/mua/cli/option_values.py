@@ -68,6 +68,21 @@ def parse_zoom(zoom: float) -> float:
     return zoom
 
 
+def parse_expressions(text: str) -> dict[str, float]:
+    """Weights by name from `jawOpen=0.7,eyeBlinkLeft=1`, held to 0 to 1."""
+    weights: dict[str, float] = {}
+    for part in filter(None, text.split(",")):
+        name, found, weight = part.rpartition("=")
+        try:
+            value = float(weight)
+        except ValueError:
+            value = math.nan
+        if not (found and name.strip() and math.isfinite(value)):
+            raise InputError(f"--expressions has {part!r}; expected a name and a weight, such as jawOpen=0.7")
+        weights[name.strip()] = min(max(value, 0.0), 1.0)
+    return weights
+
+
 def parse_level(level: str, *, geometry: bool) -> str | int:
     """`auto`, `full` or texels along a side; `geometry` where the surface is shown, which only the finest level has."""
     if level not in (AUTO, FULL) and not (level.isdecimal() and 0 < int(level) <= LARGEST):

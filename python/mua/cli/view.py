@@ -57,6 +57,12 @@ def view(
             show_default="matched by name",
         ),
     ] = None,
+    face: Annotated[
+        Path | None,
+        typer.Option(
+            help="Facial motion beside the body's: a Live Link Face recording (.csv), or a motion file with a face."
+        ),
+    ] = None,
     output: Annotated[
         Path | None,
         typer.Option(
@@ -90,7 +96,7 @@ def view(
         raise InputError("--no-open: works only with --web, which is not given")
     asked = Asked(**seen)
     given = {"--frame": frame, "--frames": frames, "--reference": reference, "--device": device, "--motion": motion}
-    given |= {"--mapping": mapping, "--listen": listen, "--clip": clip}
+    given |= {"--face": face, "--mapping": mapping, "--listen": listen, "--clip": clip}
     given |= {f"--{name.replace('_', '-')}": value for name, value in seen.items()}
     if web:
         from mua.cli.view_web import check_web, serve
@@ -104,9 +110,9 @@ def view(
     look, address = look_of(asked, output), None if listen is None else parse_listen(listen)
     if reference and look.toggles != Toggles():
         raise InputError(f"--show is {asked.show!r}; --reference draws only splats")
-    check_inputs(files, output, motion)
+    check_inputs(files, output, motion, face)
     joints = None if mapping is None else read_mapping(mapping)
-    source = Source(tuple(files), motion, joints, clip, frame)
+    source = Source(tuple(files), motion, joints, face, clip, frame)
     if output is None:
         from mua.player.window import show as show_window  # here, because files need no window system
 

@@ -20,7 +20,7 @@ from mua.cli.option_values import is_video, parse_frame, parse_frames
 from mua.cli.view_options import Kind
 from mua.files.write import replacing
 from mua.player.levels import FULL, Levels
-from mua.player.motion import named_clip, player_clips
+from mua.player.motion import expressed, named_clip, player_clips, require_expressions
 from mua.player.picture import Reference, over
 from mua.player.shot import Look, film, full_turn
 from mua.player.source import Source
@@ -53,7 +53,8 @@ def write(
     Errors: InputError where the avatar cannot be read or shown, or holds no such clip, frame or joint.
     """
     with _opened(source.files[0], device, look, reference=reference) as (avatar, painter):
-        clip = _chosen(avatar, source)
+        require_expressions(avatar.expressions, look.weights, file=source.files[0])
+        clip = expressed(_chosen(avatar, source), avatar.expressions, look.weights)
         take = _take(kind, clip, avatar, source, look, frames=frames)
         paint = painter(clip)
         painted = (paint(frame, eyes) for frame, eyes in zip(take.frames, take.cameras, strict=True))
@@ -92,7 +93,7 @@ def _levels(avatar: Avatar, look: Look) -> Levels:
 def _chosen(avatar: Avatar, source: Source) -> Clip:
     """The clip to show; notes of the retargeting go to standard error."""
     file = source.files[0]
-    clips, notes = player_clips(avatar, file, motion=source.motion, mapping=source.mapping)
+    clips, notes = player_clips(avatar, file, motion=source.motion, mapping=source.mapping, face=source.face)
     for note in notes:
         typer.echo(note, err=True)
     return named_clip(clips, source.clip, source=source.motion or file)

@@ -13,6 +13,7 @@ from mua.cli.option_values import (
     listed,
     parse_angle,
     parse_color,
+    parse_expressions,
     parse_ipd,
     parse_level,
     parse_screen,
@@ -21,6 +22,7 @@ from mua.cli.option_values import (
 )
 from mua.errors import InputError
 from mua.files.inputs import require_file, require_motion
+from mua.motion.formats import require_face
 from mua.option import Option
 from mua.player.levels import AUTO, FULL
 from mua.player.shot import Look, Shot
@@ -109,6 +111,13 @@ class Asked:
             default=f"{IN_FILES.level}, window {IN_WINDOW.level}",
         ),
     ] = None
+    expressions: Annotated[
+        str | None,
+        Option(
+            "Weights of expressions, such as jawOpen=0.7,eyeBlinkLeft=1; mua-inspect lists their names.",
+            default="those of the clip",
+        ),
+    ] = None
 
 
 def kind_of(output: Path | None, *, turntable: bool) -> Kind:
@@ -152,7 +161,7 @@ def check_together(named: Set[str]) -> None:
             raise InputError(f"{option}: works only without --listen, which shows what another program sends")
 
 
-def check_inputs(files: list[Path], output: Path | None, motion: Path | None) -> None:
+def check_inputs(files: list[Path], output: Path | None, motion: Path | None, face: Path | None) -> None:
     """Raises InputError for a file that is not there, or more of them than an image shows."""
     if output is not None and len(files) > 1:
         raise InputError(f"-o is {output}; expected one FILE, found {len(files)}")
@@ -160,6 +169,8 @@ def check_inputs(files: list[Path], output: Path | None, motion: Path | None) ->
         require_file(file)
     if motion is not None:
         require_motion(motion)
+    if face is not None:
+        require_face(face)
 
 
 def look_of(asked: Asked, output: Path | None) -> Look:
@@ -179,4 +190,5 @@ def look_of(asked: Asked, output: Path | None) -> Look:
     )
     color = parse_color(asked.background or left_out.background, output)
     toggles = parse_toggles(asked.show or left_out.show)
-    return Look(shot, toggles, color, parse_level(asked.level or left_out.level, geometry=toggles.geometry))
+    level = parse_level(asked.level or left_out.level, geometry=toggles.geometry)
+    return Look(shot, toggles, color, level, parse_expressions(asked.expressions or ""))

@@ -49,3 +49,11 @@ def require_format(path: Path) -> None:
     if suffix in ADVICE:
         raise InputError(f"{path}: {path.suffix} files are not read: {ADVICE[suffix]}")
     raise InputError(f"{path}: expected a suffix out of {', '.join(SUFFIXES)}, found {path.suffix!r}")
+
+
+def require_face(face: Path) -> None:
+    """Raises InputError for a file that is not there or of a format that holds no face."""
+    if not face.is_file():
+        raise InputError(f"--face {face}: there is no such file")
+    if face.suffix.lower() != ".csv":
+        require_format(face)

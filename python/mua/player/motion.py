@@ -1,6 +1,7 @@
 """The motion that an avatar plays: a clip of its file, or motion from another file."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ from mua.asset.avatar import Avatar
 from mua.errors import InputError
 from mua.live.live import Live
 from mua.live.receiver import Receiver
+from mua.motion.face import with_face
 from mua.motion.load import counted, load_motions, unique_names
 from mua.pose.clip import Clip
 from mua.pose.resample import resample
@@ -23,11 +25,23 @@ def player_clips(
     *,
     motion: Path | None,
     mapping: Mapping[str, str] | None,
+    face: Path | None = None,
 ) -> tuple[list[Clip], tuple[str, ...]]:
     """All clips of `motion`, or of the avatar's own file, at the avatar's rate; and notes for the user.
 
-    Errors: InputError where there is none, or where no joint of `motion` matches.
+    With `face`, each has the facial motion of that file.
+    Errors: InputError where there is none, or where no joint of `motion` or expression of `face` matches.
     """
+    clips, notes = _body_clips(avatar, file, motion=motion, mapping=mapping)
+    if face is None:
+        return clips, notes
+    faces, unused = with_face(clips, face, avatar.expressions)
+    return faces, (*notes, *unused)
+
+
+def _body_clips(
+    avatar: Avatar, file: Path, *, motion: Path | None, mapping: Mapping[str, str] | None
+) -> tuple[list[Clip], tuple[str, ...]]:
     rate = avatar.encoding.rate
     if motion is not None:
         loaded = load_motions(motion, avatar.rig.skeleton, mapping=mapping, rate=rate, expressions=avatar.expressions)
@@ -94,3 +108,19 @@ def with_weights(
     held = np.zeros(len(names)) if weights is None else np.array(weights, dtype=float)
     held[list(known)] = list(known.values())
     return held
+
+
+def expressed(clip: Clip, names: Sequence[str], named: Mapping[str, float]) -> Clip:
+    """The clip with these weights in all of its frames."""
+    if not named:
+        return clip
+    frames = [with_weights(names, clip.pose(index).expressions, named) for index in range(len(clip))]
+    return replace(clip, expressions=np.stack([frame for frame in frames if frame is not None]))
+
+
+def require_expressions(names: Sequence[str], named: Mapping[str, float], *, file: Path) -> None:
+    """Raises InputError for an expression that the avatar of a file does not have."""
+    for name in named:
+        if name not in names:
+            held = ", ".join(names) or "no expressions"
+            raise InputError(f"--expressions has {name!r}; {file} has {held}")

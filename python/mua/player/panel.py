@@ -9,6 +9,7 @@ from mua.player.session import Session
 from mua.player.toggles import Toggles
 
 WIDTH = 300  # logical pixels
+ROWS = 8  # expressions that the list shows at once
 SLOWEST, FASTEST = 0.1, 2.0  # factors of the clip's own speed
 WARNING = imgui.ImVec4(1.0, 0.55, 0.4, 1.0)
 VISIBLE = 0.01  # weight of an expression that is listed
@@ -68,6 +69,7 @@ def draw_panel(session: Session, *, rate: float) -> None:
     _sources(session)
     _transport(session)
     _live(session)
+    _face(session)
     _shown(session)
     _times(session, rate)
     _keys()
@@ -116,6 +118,25 @@ def _live(session: Session) -> None:
     for name, weight in session.live.now.expressions.items():
         if weight >= VISIBLE:
             imgui.progress_bar(weight, (0, 0), name)
+
+
+def _face(session: Session) -> None:
+    """A slider for each expression, in a list that scrolls and can be searched."""
+    held = session.expressions
+    if not held or not imgui.collapsing_header(f"Expressions ({len(held)})"):
+        return
+    _, session.search = imgui.input_text("search", session.search)
+    found = [name for name in held if session.search.lower() in name.lower()]
+    height = min(len(found), ROWS) * imgui.get_frame_height_with_spacing()
+    imgui.begin_child("expressions", (0, height))
+    for name in found:
+        imgui.set_next_item_width(WIDTH / 2.5)
+        changed, weight = imgui.slider_float(name, held[name], 0.0, 1.0, "%.2f", imgui.SliderFlags_.always_clamp)
+        if changed:
+            session.weights[name] = weight
+    imgui.end_child()
+    if imgui.button("as the clip has them"):
+        session.weights.clear()
 
 
 def _shown(session: Session) -> None:

@@ -20,7 +20,15 @@ from mua.player.buffers import AvatarBuffers
 from mua.player.focus import find_focus
 from mua.player.frame import AvatarFrame
 from mua.player.levels import AUTO, Levels, Wanted
-from mua.player.motion import live_of, named_clip, player_clips, require_frame, stance, with_weights
+from mua.player.motion import (
+    live_of,
+    named_clip,
+    player_clips,
+    require_expressions,
+    require_frame,
+    stance,
+    with_weights,
+)
 from mua.player.overlays import ground_height
 from mua.player.scene import CLEAR, Scene
 from mua.player.schedule import DecodeSchedule, Moment
@@ -69,8 +77,8 @@ class Stage:
 def _clips(source: Source, avatar: Avatar, file: Path, live: Live | None) -> tuple[list[Clip], tuple[str, ...]]:
     """The clips to choose from, first the one that stands for a live pose, and notes."""
     if live is None:
-        return player_clips(avatar, file, motion=source.motion, mapping=source.mapping)
-    clips, notes = player_clips(avatar, file, motion=None, mapping=None) if avatar.clips else ([], ())
+        return player_clips(avatar, file, motion=source.motion, mapping=source.mapping, face=source.face)
+    clips, notes = player_clips(avatar, file, motion=None, mapping=None, face=source.face) if avatar.clips else ([], ())
     return [stance(live, avatar.encoding.rate), *clips], notes
 
 
@@ -88,12 +96,14 @@ class Session:
         self.stereo, self.follow = look.shot.eyes is not None, look.shot.follow
         self.turning = look.shot.turning
         self.playing, self.speed, self.time = True, 1.0, 0.0  # time in frames of the clip
-        self.weights: dict[str, float] = {}  # of expressions, in place of the clip's; those of other avatars are kept
+        self.weights = dict(look.weights)  # of expressions, in place of the clip's; those of other avatars are kept
+        self.search = ""  # what the panel narrows its list of expressions to
         self.failure = ""  # why the avatar last chosen is not shown
         self.milliseconds: dict[str, float] = {}  # by kernel, smoothed
         self.timed = False  # whether to measure them
         self.file = source.files[0]
         self._stage = self._load(self.file)
+        require_expressions(self._stage.expressions, look.weights, file=self.file)
         self._clip = named_clip(self._stage.clips, source.clip, source=source.motion or self.file)
         if source.frame is not None:
             self.step(require_frame(self._clip, source.frame))

@@ -1,6 +1,7 @@
 """How a figure is filmed: from where, how near, still, orbiting or following, with one eye or two."""
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -44,6 +45,7 @@ class Look:
     toggles: Toggles
     background: Color | None  # None: transparent
     level: Wanted = FULL  # level of detail
+    weights: Mapping[str, float] = field(default_factory=dict)  # of expressions, in place of the clip's
 
 
 def film(shot: Shot, rig: Rig, clip: Clip) -> list[tuple[Camera, ...]]:
