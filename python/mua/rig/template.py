@@ -17,7 +17,10 @@ ATTEMPTS = 6  # attempts: how many vertices a number of triangles leaves is only
 UV_WEIGHT = 4.0  # weight of an error in UV relative to the distance on the surface that it stands for
 SKIN_WEIGHT = 0.5  # share of the character's size: the error of a vertex that moves with a wrong joint
 SKIN_DIRECTIONS = 24  # dimensions of the space of skin weights; the library takes 32 attributes
-FACE_WEIGHT = 300.0  # of a metre that an expression moves a vertex wrongly: the triangles about lips and lids are small
+FACE_SHARE = 4  # a quarter as many vertices come on top, or those that expressions move, where that is fewer
+FACE_WEIGHT = (
+    1000.0  # of a metre that an expression moves a vertex wrongly: the triangles about lips and lids are small
+)
 FACE_DIRECTIONS = 14  # random directions that stand for all expressions' offsets, where there are any
 SKIN_BESIDE_FACE = 16  # dimensions of the space of skin weights beside these
 NO_ERROR_LIMIT = c_float(1e9)  # only the number of triangles ends the decimation
@@ -38,9 +41,12 @@ def make_template(character: Character, *, vertices: int = 5000) -> Template:
     """Decimate a character's mesh to about `vertices` by edge collapses that keep UV seams and chart borders.
 
     The quadrics measure positions, UVs, skin weights and expressions together (Garland and Heckbert 1998), so that
-    chart borders, the bends at joints, lips and lids stay where they are.
+    chart borders, the bends at joints, lips and lids stay where they are. A face that moves gets vertices of its own
+    on top, so that the body keeps its own.
     """
     mesh = character.mesh
+    if character.expressions is not None:
+        vertices += min(len(np.unique(character.expressions.vertices)), vertices // FACE_SHARE)
     if len(mesh.vertices) > DENSE_ENOUGH * vertices:
         mesh = _decimate(mesh, vertices, _skin_directions(character), _face_directions(character))
     kept, faces = np.unique(mesh.faces, return_inverse=True)
