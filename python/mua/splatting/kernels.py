@@ -183,7 +183,7 @@ def passes(real: Any) -> Passes:
             return
         transmittance = one
         pair = pixel.first
-        while pair < pixel.end and transmittance > smallest:
+        while pair < pixel.end and transmittance > least and transmittance >= smallest:
             quad = quads[pair]
             weight = transmittance * shapes[quad, 5] * window(place_in(pixel, shapes, quad))
             if weight >= smallest:

@@ -11,7 +11,7 @@ from typing import Any
 import torch
 import warp as wp
 
-from mua.splatting.kernels import LEAST_TRANSMITTANCE, passes
+from mua.splatting.kernels import passes
 from mua.splatting.projection import Eye, TorchSplats, colors_seen, half_extents, project
 from mua.splatting.tiles import TILE, Tiles, assign, join
 
@@ -65,7 +65,7 @@ def largest_shares(
     eye: Eye,
     bounds: torch.Tensor,  # [2, 3] world box over which depth is keyed
     *,
-    least: float = LEAST_TRANSMITTANCE,  # of the shares that count
+    least: float = 0.0,  # of the shares that count
 ) -> torch.Tensor:
     """The largest share of any pixel's colour that each splat gives, [N] in 0..1; 0 where it is below `least`."""
     quads = project(splats, eye, bounds)
