@@ -17,6 +17,7 @@ from mua.avatar.rendering import projected, render_over
 from mua.baking import one_sided
 from mua.bench.random_avatar import random_avatar
 from mua.pose.clip import Clip
+from mua.splatting.projection import TorchSplats
 from mua.student.settings import preset
 
 
@@ -191,9 +192,9 @@ def test_views_are_drawn_by_all_threads_with_the_same_result(threads: int, monke
     meet = threading.Barrier(threads, timeout=60)
     drawn = one_sided._shares_behind
 
-    def together(splats: Splats, normals: Array, camera: Camera) -> Array:
+    def together(splats: TorchSplats, bounds: torch.Tensor, normals: Array, camera: Camera) -> Array:
         meet.wait()
-        return drawn(splats, normals, camera)
+        return drawn(splats, bounds, normals, camera)
 
     avatar = closed()
     monkeypatch.setattr(one_sided, "VIEWS", 9)

@@ -113,7 +113,7 @@ def test_a_share_is_the_largest_of_all_pixels() -> None:
     eye, bounds = Eye.of(camera(), splats.centres), torch.tensor(drawn_splats.bounds)
     quads, expected = project(splats, eye, bounds), torch.zeros(30, dtype=torch.float64)
     for place, splat in enumerate(quads.splats.tolist()):
-        alone = torch.zeros_like(quads.colors)
+        alone = torch.zeros(len(quads.splats), 3, dtype=torch.float64)
         alone[place] = 1
         expected[splat] = draw_quads([(quads.shapes, alone)], [SCREEN])[0][..., 0].max()
     torch.testing.assert_close(largest_shares(splats, eye, bounds), expected)

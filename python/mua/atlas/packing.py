@@ -40,8 +40,8 @@ def pack(
     surface = areas(corners).sum()
     scaled = corners * (GRID * np.sqrt(FULL / max(surface, np.finfo(float).tiny)))
     points, angles = points_on(scaled, charts), narrowest_angles(corners, charts)
-    tries = TRIES[: max(CHARTS_TRIED // len(points), 1)]
-    layouts = [_laid(points, angles, by_box=by_box, full=full * FULL) for by_box, full in tries]
+    tries, half = TRIES[: max(CHARTS_TRIED // len(points), 1)], _half_gutters(points, angles)
+    layouts = [_laid(points, angles, by_box=by_box, full=full * FULL, half=half) for by_box, full in tries]
     best = max(layouts, key=lambda layout: layout.scale / layout.side)
     placed = best.scale * np.einsum("fij,fkj->fki", best.turns[charts], scaled) + best.shifts[charts][:, None]
     placed -= placed.min(axis=(0, 1))
@@ -54,9 +54,10 @@ def _laid(
     *,
     by_box: bool,  # the order is that of their boxes, not of their cells
     full: float,
+    half: float,  # from `_half_gutters`
 ) -> _Layout:
     """Lay down all charts, smaller than they are until they take `full` of the square, or less where they must."""
-    scale = _fitting(points, angles, full)
+    scale = _fitting(points, full, half)
     while True:
         shapes = [rasterised(scale * p, angle) for p, angle in zip(points, angles, strict=True)]
         layout = _attempt(shapes, [scale * p for p in points], scale=scale, by_box=by_box)
@@ -65,12 +66,16 @@ def _laid(
         scale *= SMALLER
 
 
-def _fitting(points: Sequence[Array], angles: Array, full: float) -> float:
-    """The scale at which charts and half of their gutters have as many cells as `full` of the square."""
+def _half_gutters(points: Sequence[Array], angles: Array) -> float:
+    """Half of what the gutters take beside the charts at a scale of 1."""
     surface = FULL * GRID**2
     gutters = sum(rasterised(p, angle).cells for p, angle in zip(points, angles, strict=True)) - surface
-    half = gutters / (2 * surface)  # gutters grow with length, charts with area: a quadratic equation
-    scale = np.sqrt(full / FULL + half**2) - half
+    return float(gutters / (2 * surface))
+
+
+def _fitting(points: Sequence[Array], full: float, half: float) -> float:
+    """The scale at which charts and half of their gutters have as many cells as `full` of the square."""
+    scale = np.sqrt(full / FULL + half**2) - half  # gutters grow with length, charts with area: a quadratic equation
     return float(min(scale, GRID / max(np.ptp(p, axis=1).max() for p in points)))
 
 

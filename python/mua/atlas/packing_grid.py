@@ -70,10 +70,14 @@ class PackingGrid:
         height, width = box
         found: list[tuple[int, int]] = []
         for bound in (self.reach, self._side):
+            if len(found) == count:
+                break
             free = each_bit(self._free(Shape.box(height, width), bound))
             solid = np.zeros((self._side, self._side), bool)
             for row, column in zip(*(at.tolist() for at in np.nonzero(free)), strict=True):
-                if len(found) < count and free[row, column]:
+                if len(found) == count:
+                    break
+                if free[row, column]:
                     down, right = row + height - GUTTER, column + width - GUTTER
                     free[row:down, max(column - width + GUTTER + 1, 0) : right] = False
                     solid[row + GUTTER : down, column + GUTTER : right] = True

@@ -1,6 +1,7 @@
 """From an avatar and a window of poses to posed splats, by the reference kernels."""
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -48,6 +49,15 @@ class Splats:
         return f"<mua.Splats: {len(self):,} splats, {self.centres.dtype}>"
 
 
+@dataclass(frozen=True, eq=False)
+class Unposed:
+    """A decoded frame in canonical space."""
+
+    mesh: Array  # [V, 3] canonical vertices
+    texture: Array  # [N, 23] raw channels (mua.channels)
+    outside: float  # share of the pose that training did not show (schemas/README.md, 3.7)
+
+
 def decode(
     avatar: Model,
     rotations: Array,  # [k, J, 4] local joint rotations, newest first
@@ -57,6 +67,21 @@ def decode(
     dtype: npt.DTypeLike = np.float32,
 ) -> Splats:
     """Decode the newest frame of a window of poses; float64 gives the most exact reference."""
+    unposed = decode_unposed(avatar, rotations, translations=translations, expressions=expressions, dtype=dtype)
+    pose = Pose(rotations[0], translations[0])
+    splats = pose_splats(avatar.rig, unposed.mesh, texture=unposed.texture, pose=pose, bounds=avatar.bounds)
+    return replace(splats, outside=unposed.outside)
+
+
+def decode_unposed(
+    avatar: Model,
+    rotations: Array,  # [k, J, 4] local joint rotations, newest first
+    *,
+    translations: Array,  # [k, J, 3] local joint translations, metres
+    expressions: Array | None = None,  # [E] weights of the newest frame, 0 to 1; None: all 0
+    dtype: npt.DTypeLike = np.float32,
+) -> Unposed:
+    """Decode the newest frame of a window of poses in canonical space."""
     descriptor = describe_window(avatar.rig.skeleton, avatar.encoding, rotations, translations)
     read, outside = read_components(avatar.components, descriptor)
     x = read.astype(dtype)
@@ -65,9 +90,7 @@ def decode(
     appearance = decode_branch(avatar.appearance, avatar.wavelet, x, texels=avatar.rig.texels.texels)
     texture = np.concatenate([geometry, appearance]).T
     canonical, texture = express(avatar.rig, canonical, texture=texture, weights=expressions)
-    pose = Pose(rotations[0], translations[0])
-    splats = pose_splats(avatar.rig, canonical, texture=texture, pose=pose, bounds=avatar.bounds)
-    return replace(splats, outside=float(outside))
+    return Unposed(canonical, texture, float(outside))
 
 
 def decode_clip_frame(
@@ -78,9 +101,24 @@ def decode_clip_frame(
     dtype: npt.DTypeLike = np.float32,
 ) -> Splats:
     """Decode one frame of a clip; before its first frame, the clip stands still."""
+    return decode(avatar, **_window(avatar, clip, frame), dtype=dtype)
+
+
+def unposed_clip_frame(
+    avatar: Model,
+    clip: Clip,
+    *,
+    frame: int,  # at the rate of the avatar's encoding
+) -> Unposed:
+    """One frame of a clip as `decode_clip_frame` decodes it, in canonical space."""
+    return decode_unposed(avatar, **_window(avatar, clip, frame))
+
+
+def _window(avatar: Model, clip: Clip, frame: int) -> dict[str, Any]:
+    """The poses, newest first, and the expressions that a frame of a clip is decoded from."""
     window = sample(clip, np.array(avatar.encoding.frames(frame)), rate=avatar.encoding.rate)
     weights = None if window.expressions is None else window.expressions[0]
-    return decode(avatar, window.rotations, translations=window.translations, expressions=weights, dtype=dtype)
+    return {"rotations": window.rotations, "translations": window.translations, "expressions": weights}
 
 
 def expand_mesh(

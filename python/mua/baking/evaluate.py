@@ -15,7 +15,7 @@ import torch
 
 from mua.arrays import Array
 from mua.asset.avatar import Avatar
-from mua.avatar.decode import decode_clip_frame
+from mua.avatar.decode import unposed_clip_frame
 from mua.channels import APPEARANCE, ATTRIBUTES, GEOMETRY, SH_C0
 from mua.recording import Recording, WholeFrame
 from mua.student.bases import BestCoefficients
@@ -153,12 +153,12 @@ class _Comparer:
         """The images of each frame by name."""
         bands, best = self._closest(frames)
         for i, frame in enumerate(frames):
-            posed = decode_clip_frame(self.avatar, frame.clip, frame=frame.index)
+            own = unposed_clip_frame(self.avatar, frame.clip, frame=frame.index)
             yield {
                 "mean": self.mean,
                 "bands": Picture(bands[i]),
                 "best": Picture(best[i]),
-                "student": Picture(posed.texture, posed.canonical, posed.outside),
+                "student": Picture(own.texture, own.mesh, own.outside),
             }
 
     @torch.no_grad()

@@ -76,7 +76,8 @@ def shares_behind(
             splats = decode_clip_frame(whole, clip, frame=frame)
             normals = texel_normals(whole.rig, splats.canonical, splats.texel_dq)
             cameras = around(splats, texel_length(whole), first=number * VIEWS)
-            for shares in in_order(partial(_shares_behind, splats, normals), cameras, threads=threads):
+            drawn, bounds = _in_torch(splats), torch.as_tensor(splats.bounds)
+            for shares in in_order(partial(_shares_behind, drawn, bounds, normals), cameras, threads=threads):
                 np.maximum(behind, shares, out=behind)
             progress(number + 1, len(poses))
     return behind
@@ -141,11 +142,13 @@ def around(splats: Splats, texel: float, *, first: int) -> list[Camera]:
     return cameras
 
 
-def _shares_behind(splats: Splats, normals: Array, camera: Camera) -> Array:
-    """The largest share of a pixel that each splat gives, [N]; 0 where its triangle is not seen from behind."""
+def _in_torch(splats: Splats) -> TorchSplats:
     given = {"centres": splats.centres, "rotations": splats.rotations, "scales": splats.scales, "sh": splats.sh}
     given |= {"opacities": splats.opacities, "turns": splats.texel_dq[:, :4]}
-    drawn = TorchSplats(**{name: torch.as_tensor(np.ascontiguousarray(values)) for name, values in given.items()})
-    bounds = torch.as_tensor(splats.bounds)
-    shares = largest_shares(drawn, Eye.of(camera, drawn.centres), bounds).numpy()
-    return np.where(facing(splats.centres, normals, camera.view) > AWAY, shares, 0)
+    return TorchSplats(**{name: torch.as_tensor(np.ascontiguousarray(values)) for name, values in given.items()})
+
+
+def _shares_behind(splats: TorchSplats, bounds: torch.Tensor, normals: Array, camera: Camera) -> Array:
+    """The largest share of a pixel that each splat gives, [N]; 0 where its triangle is not seen from behind."""
+    shares = largest_shares(splats, Eye.of(camera, splats.centres), bounds, least=LARGEST_SHARE).numpy()
+    return np.where(facing(splats.centres.numpy(), normals, camera.view) > AWAY, shares, 0)

@@ -250,7 +250,7 @@ class TeacherWriter:
             for name in index.complete:
                 self._clips.setdefault(name, _ClipState(held_out=False)).complete = True
         self._training_frames = indices[-1].training_frames if indices else 0
-        self._sum = np.zeros((self._header.valid_texels, CHANNELS))
+        self._sum = np.zeros((CHANNELS, self._header.valid_texels)).T
         if indices:
             self._sum += open_array(
                 self.directory / SHARDS / shard_name(len(indices) - 1) / SUM, self._sum.shape, "<f8"
@@ -293,7 +293,7 @@ class TeacherWriter:
         return _Encoded(vertices, difference, subbands.half())
 
     def _keep(self, state: _ClipState, frame: _Encoded, *, whole: bool) -> None:
-        kept = frame.difference.astype(np.float16) if whole else None
+        kept = frame.difference.astype(np.float16, order="C") if whole else None
         self._shard.add_frame(state.frames, mesh=frame.mesh, subbands=frame.subbands, whole=kept)
         state.recorded.append(state.frames)
         if is_averaged(self._clip, held_out=state.held_out):
@@ -302,7 +302,7 @@ class TeacherWriter:
 
     def _keep_reference(self, texture: Array) -> Reference:
         check_range(texture, self._texels.texels, self._texels.size)
-        texture = texture.copy()  # the caller may fill the same buffer with the next frame
+        texture = texture.copy(order="K")  # the caller may fill the same buffer with the next frame
         reference = Reference(texture, filled_subbands(texture, self._fill, wavelet=self._header.wavelet))
         if reference.subbands.peak > HALF_MAX:
             raise InputError(f"texture: a subband is {reference.subbands.peak:.3g}, expected at most {HALF_MAX:.0f}")
@@ -313,7 +313,7 @@ class TeacherWriter:
         """Store the gathered shard, if anything is in it."""
         if self._shard.is_empty:
             return
-        self._shard.commit(self._sum, training_frames=self._training_frames)
+        self._shard.commit(np.ascontiguousarray(self._sum), training_frames=self._training_frames)
         self._begin_shard(self._number + 1)
 
     def _begin_shard(self, number: int) -> None:

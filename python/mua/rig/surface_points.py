@@ -52,10 +52,10 @@ def nearest_barycentrics(
     least = np.where(np.isnan(best[..., 0]), np.inf, 0)
     for k, (start, end) in enumerate(((a, b), (b, c), (c, a))):
         edge = end - start
-        length = np.sum(edge * edge, axis=-1)
-        along = np.sum((points - start) * edge, axis=-1)
+        length, along = _dot(edge, edge), _dot(points - start, edge)
         share = np.clip(np.divide(along, length, out=np.zeros_like(length), where=length > 0), 0, 1)
-        away = np.sum((points - start - share[..., None] * edge) ** 2, axis=-1)
+        rest = points - start - share[..., None] * edge
+        away = _dot(rest, rest)
         found = np.zeros_like(inside)
         found[..., k], found[..., (k + 1) % 3] = 1 - share, share
         nearer = away < least
@@ -66,10 +66,14 @@ def nearest_barycentrics(
 def _plane_barycentrics(points: Array, a: Array, b: Array, c: Array) -> Array:
     """Barycentrics of projections onto the triangles' planes; negative outside, and where there is no area."""
     u, v, w = b - a, c - a, points - a
-    uu, vv, uv = (np.sum(p * q, axis=-1) for p, q in ((u, u), (v, v), (u, v)))
-    wu, wv = np.sum(w * u, axis=-1), np.sum(w * v, axis=-1)
+    uu, vv, uv, wu, wv = (_dot(p, q) for p, q in ((u, u), (v, v), (u, v), (w, u), (w, v)))
     area = uu * vv - uv * uv
     solid = area > 1e-12 * uu * vv
     second = np.divide(vv * wu - uv * wv, area, out=np.full_like(area, -1.0), where=solid)
     third = np.divide(uu * wv - uv * wu, area, out=np.full_like(area, -1.0), where=solid)
     return np.stack([1 - second - third, second, third], axis=-1)
+
+
+def _dot(p: Array, q: Array) -> Array:
+    """Inner products [...] of vectors [..., 3]."""
+    return np.asarray(np.einsum("...c,...c->...", p, q))

@@ -176,16 +176,18 @@ def passes(real: Any) -> Passes:
         quads: wp.array[wp.int32],
         shapes: wp.array2d[real],
         largest: wp.array[real],  # [M] weight in any pixel
+        smallest: real,  # of the weights that count
     ):
         pixel = pixel_of(wp.tid(), places, starts)
         if pixel.at < 0:
             return
         transmittance = one
         pair = pixel.first
-        while pair < pixel.end and transmittance > least:
+        while pair < pixel.end and transmittance > least and transmittance >= smallest:
             quad = quads[pair]
             weight = transmittance * shapes[quad, 5] * window(place_in(pixel, shapes, quad))
-            wp.atomic_max(largest, quad, weight)
+            if weight >= smallest:
+                wp.atomic_max(largest, quad, weight)
             transmittance -= weight
             pair += 1
 

@@ -47,7 +47,6 @@ class Quads:
 
     splats: torch.Tensor  # [M] int64 into the splats
     shapes: torch.Tensor  # [M, 6] middle (column, row); uu, uv, vv from offset to (u, v) in the quad; peak of alpha
-    colors: torch.Tensor  # [M, 3] sRGB, not below 0
 
 
 def project(
@@ -65,7 +64,7 @@ def project(
         seen = torch.nonzero(shown)[:, 0]
         keys = _keys(splats.centres[seen], eye.view, near, bounds)
         chosen = seen[torch.sort(keys, stable=True).indices].flip(0)
-    return Quads(chosen, shapes[chosen], colors_seen(splats, chosen, eye))
+    return Quads(chosen, shapes[chosen])
 
 
 def half_extents(
@@ -152,7 +151,7 @@ def colors_seen(
     chosen: torch.Tensor,  # [M] int64 into the splats
     eye: Eye,
 ) -> torch.Tensor:
-    """Colours [M, 3] of mua.kernels.splat_draw.splat_colors."""
+    """sRGB colours [M, 3], not below 0, of mua.kernels.splat_draw.splat_colors."""
     position = -eye.view[:3, :3].T @ eye.view[:3, 3]
     direction = torch.nn.functional.normalize(splats.centres[chosen] - position, dim=1)
     turned = (direction[:, None] @ matrices(splats.turns[chosen]))[:, 0]  # by the transpose: back

@@ -12,7 +12,7 @@ import torch
 import warp as wp
 
 from mua.splatting.kernels import passes
-from mua.splatting.projection import Eye, TorchSplats, half_extents, project
+from mua.splatting.projection import Eye, TorchSplats, colors_seen, half_extents, project
 from mua.splatting.tiles import TILE, Tiles, assign, join
 
 # Warp compiles and loads a kernel when it is first launched, which two threads must not do at once.
@@ -43,11 +43,13 @@ def rasterise_views(
 ) -> list[torch.Tensor]:
     """Premultiplied sRGB and alpha [H, W, 4] of several cameras, each of a size of its own, by one launch."""
     quads = [project(splats, eye, bounds) for eye in eyes]
-    return draw_quads([(one.shapes, one.colors) for one in quads], [eye.screen for eye in eyes])
+    colors = [colors_seen(splats, one.splats, eye) for one, eye in zip(quads, eyes, strict=True)]
+    shapes = [one.shapes for one in quads]
+    return draw_quads(list(zip(shapes, colors, strict=True)), [eye.screen for eye in eyes])
 
 
 def draw_quads(
-    quads: Sequence[tuple[torch.Tensor, torch.Tensor]],  # shapes [M, 6] and colours [M, 3] of Quads, front to back
+    quads: Sequence[tuple[torch.Tensor, torch.Tensor]],  # shapes [M, 6] and colours [M, 3] of quads, front to back
     screens: Sequence[tuple[int, int]],  # width, height, pixels
 ) -> list[torch.Tensor]:
     """Premultiplied colour and alpha [H, W, 4] of each screen."""
@@ -62,12 +64,14 @@ def largest_shares(
     splats: TorchSplats,
     eye: Eye,
     bounds: torch.Tensor,  # [2, 3] world box over which depth is keyed
+    *,
+    least: float = 0.0,  # of the shares that count
 ) -> torch.Tensor:
-    """The largest share of any pixel's colour that each splat gives, [N] in 0..1; 0 of those out of the image."""
+    """The largest share of any pixel's colour that each splat gives, [N] in 0..1; 0 where it is below `least`."""
     quads = project(splats, eye, bounds)
     shapes = quads.shapes.detach().contiguous()
     largest = shapes.new_zeros(len(shapes))
-    _launch(passes(REALS[shapes.dtype]).weigh, _tiles(shapes, eye.screen), [shapes, largest])
+    _launch(passes(REALS[shapes.dtype]).weigh, _tiles(shapes, eye.screen), [shapes, largest], least)
     return torch.zeros_like(splats.opacities).index_copy(0, quads.splats, largest)
 
 
@@ -97,12 +101,12 @@ class _Draw(torch.autograd.Function):
         return by_shapes, by_colors, None
 
 
-def _launch(kernel: Any, tiles: Tiles, tensors: list[torch.Tensor]) -> None:
+def _launch(kernel: Any, tiles: Tiles, tensors: list[torch.Tensor], *numbers: float) -> None:
     """A thread for each pixel of each tile."""
     device = wp.device_from_torch(tensors[0].device)
     held = (tiles.places, tiles.starts, tiles.quads, *tensors)
     arrays = [wp.from_torch(tensor, requires_grad=False) for tensor in held]
     stream = wp.stream_from_torch(tensors[0].device) if device.is_cuda else None
     with nullcontext() if (kernel, device.alias) in _LAUNCHED else _FIRST:
-        wp.launch(kernel, dim=len(tiles.places) * TILE * TILE, inputs=arrays, device=device, stream=stream)
+        wp.launch(kernel, dim=len(tiles.places) * TILE * TILE, inputs=[*arrays, *numbers], device=device, stream=stream)
         _LAUNCHED.add((kernel, device.alias))

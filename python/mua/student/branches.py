@@ -1,4 +1,4 @@
-"""Fits both branches of a student at once on a CPU, each with its share of the threads."""
+"""Fits parts of a student at once on a CPU, each with its share of the threads."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -11,16 +11,15 @@ from mua.training.torch_threads import thread_share
 
 
 class Stopped(Exception):
-    """Raised in a branch whose fit must end because that of the other one failed."""
+    """Raised in a part whose fit must end because that of another one failed."""
 
 
-def each_branch(tasks: Sequence[Callable[[Run], None]], run: Run) -> None:
-    """Fit the branches: on a CPU side by side, each with its share of the threads; else one after the other.
+def fit_apart(tasks: Sequence[Callable[[Run], None]], run: Run) -> None:
+    """Fit parts that share nothing but their inputs: on a CPU side by side; else one after the other.
 
-    They share nothing but the descriptors, so that half the threads for each do more than all for one: the larger
-    part of a step is too small to be divided.
+    There half the threads for each do more than all for one: the larger part of a step is too small to be divided.
     """
-    if not side_by_side(run):
+    if len(tasks) < 2 or not side_by_side(run):
         for task in tasks:
             task(run)
         return
@@ -36,5 +35,5 @@ def each_branch(tasks: Sequence[Callable[[Run], None]], run: Run) -> None:
 
 
 def side_by_side(run: Run) -> bool:
-    """Whether branches are fitted at once: not on a GPU, whose memory one fills, nor where processes take turns."""
+    """Whether parts are fitted at once: not on a GPU, whose memory one fills, nor where processes take turns."""
     return run.device.type == "cpu" and run.processes.count == 1

@@ -62,8 +62,10 @@ class Detail(nn.Module):
 
     def forward(self, alpha: Tensor) -> Tensor:
         """Subbands [F, 3, C, n, n] of coefficients [F, C, R]."""
-        weighted = alpha[:, None, :, :, None] * self.h  # [F, 3, C, R, n]
-        return weighted.transpose(-1, -2) @ self.w + self.mean
+        by_frame = alpha.transpose(0, 1)[:, :, None]  # [C, F, 1, R]
+        rows = by_frame * self.h.mT.contiguous()[:, :, None]  # [3, C, F, n, R]
+        bands = rows.flatten(2, 3) @ self.w  # all frames in one product, which is faster than one for each
+        return bands.unflatten(2, rows.shape[2:4]).permute(2, 0, 1, 3, 4) + self.mean
 
 
 class Branch(nn.Module):

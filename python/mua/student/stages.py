@@ -11,7 +11,7 @@ from mua.channels import APPEARANCE, CHANNELS, GEOMETRY
 from mua.errors import InputError
 from mua.rig.bones import figure_scale
 from mua.student.bases import factorize_branch
-from mua.student.branches import each_branch, side_by_side
+from mua.student.branches import fit_apart, side_by_side
 from mua.student.coarse import fit_coarse
 from mua.student.components import Components
 from mua.student.conditioned import fold
@@ -87,12 +87,22 @@ def train(
         if random
         else partial(fit_coarse, components=components, parts=samples.parts, weights=counts)
     )
-    if only in (None, "coarse"):
+    seen: Bands | None = None
+
+    def fit_mesh(run: Run) -> None:
         start(student.coarse, inputs, samples.meshes.to(device), settings=settings, run=run.alone("coarse mesh"))
+
+    def look(run: Run) -> None:
+        nonlocal seen
+        seen = _sensitivities(samples, run.alone(SENSITIVITIES))
+
+    first = [fit_mesh] if only in (None, "coarse") else []
+    if only != "coarse" and not random:
+        first.append(look)
+    fit_apart(first, run)
     release_memory()
     if only == "coarse":
         return
-    seen = None if random else _sensitivities(samples, run.alone(SENSITIVITIES))
     warm = partial(
         fit_branch, components=components, parts=samples.parts, until=only, sensitivities=seen, frames=counts
     )
@@ -111,7 +121,7 @@ def train(
         fit(branch, inputs, source, channels=channels, settings=settings, name=name, run=run.alone(name))
 
     branches = zip(BRANCHES, student.branches, (GEOMETRY, APPEARANCE), strict=True)
-    each_branch([partial(fit_named, *branch) for branch in branches], run)
+    fit_apart([partial(fit_named, *branch) for branch in branches], run)
     if only is not None:
         return
     low = student.mean_lowpass() if counts is None else mean_lowpass(student, samples)

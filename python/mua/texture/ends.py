@@ -102,7 +102,9 @@ class _Pieces:
             near = self._tree.query(among[rows], k=range(1, min(count, self._tree.n) + 1), workers=-1)[1]
             corners = self._corners[self._triangles[near]]
             nearest = np.einsum("nkc,nkcd->nkd", nearest_barycentrics(places[rows, None], corners), corners)
-            off[rows] = np.linalg.norm(nearest - places[rows, None], axis=2).min(axis=1) > AWAY * reach[rows]
+            away = nearest - places[rows, None]
+            squares = np.einsum("nkc,nkc->nk", away, away).min(axis=1)
+            off[rows] = squares > (AWAY * reach[rows]) ** 2
         return off
 
     def _among(self, places: Array, pieces: Array) -> Array:

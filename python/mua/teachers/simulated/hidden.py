@@ -7,6 +7,7 @@ of coarse ones. They show the colour of what is seen instead.
 # mypy: disable-error-code="index, operator, attr-defined, no-untyped-def, var-annotated"
 # (the body of the kernel is Warp's language, not Python)
 
+import os
 from collections.abc import Callable, Iterator
 from functools import partial
 
@@ -19,6 +20,7 @@ from mua.arrays import Array
 from mua.rig.character import Character
 from mua.rig.moving import moving_joints
 from mua.teachers.simulated.surface import SkinnedSurface
+from mua.training.threads import in_order
 from mua.training.warp_start import start
 
 DEVICE = "cpu"
@@ -108,12 +110,20 @@ def _poses(character: Character, rng: np.random.Generator) -> list[Array]:
 
 def _seen(points: Array, vertices: Array, faces: Array, *, away: Array, lift: float) -> Array:
     """Which points [n] a triangle does not enclose from all sides."""
-    seen = wp.zeros(len(points), dtype=bool, device=DEVICE)
-    if len(points) and len(faces):
-        mesh = wp.Mesh(
-            points=wp.array(vertices, dtype=wp.vec3, device=DEVICE),
-            indices=wp.array(faces.ravel(), dtype=int, device=DEVICE),
-        )
-        inputs = [wp.array(values, dtype=wp.vec3, device=DEVICE) for values in (points, away)]
-        wp.launch(look_out, dim=len(points), inputs=[mesh.id, *inputs, lift], outputs=[seen], device=DEVICE)
-    return np.asarray(seen.numpy() | (len(faces) == 0))
+    if not len(points) or not len(faces):
+        return np.ones(len(points), bool)
+    mesh = wp.Mesh(
+        points=wp.array(vertices, dtype=wp.vec3, device=DEVICE),
+        indices=wp.array(faces.ravel(), dtype=int, device=DEVICE),
+    )
+    directions = wp.array(away, dtype=wp.vec3, device=DEVICE)
+
+    def looked(some: Array) -> Array:
+        seen = wp.zeros(len(some), dtype=bool, device=DEVICE)
+        inputs = [mesh.id, wp.array(some, dtype=wp.vec3, device=DEVICE), directions, lift]
+        wp.launch(look_out, dim=len(some), inputs=inputs, outputs=[seen], device=DEVICE)
+        return np.asarray(seen.numpy())
+
+    wp.load_module(__name__, device=DEVICE)  # two threads must not do that at once
+    threads = min(os.cpu_count() or 1, len(points))
+    return np.concatenate(list(in_order(looked, np.array_split(points, threads), threads=threads)))
