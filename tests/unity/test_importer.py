@@ -8,9 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from csharp import PROGRAMS, ROOT, CSharp
+from frame_bounds import FRAME_ORDER
 from package_compiler import Compiler, assemblies
 from PIL import Image
-from synthetic_avatar import synthetic_avatar
+from synthetic_avatar import synthetic_avatar, with_expressions
 from training import outside_of_training
 
 from mua.asset import write
@@ -237,6 +238,19 @@ def test_a_component_is_scrubbed_in_its_inspector(story: Story, tmp_path: Path) 
     ]
     assert failed.startswith("property nod; Error ")
     assert reported["alive"] == [["0"]]
+
+
+def test_a_face_is_moved_in_the_inspector(story: Story, tmp_path: Path) -> None:
+    """Each movement of a slider is shown with the one frame that the editor is asked for."""
+    avatar, path = synthetic_avatar(), tmp_path / "a.muaavatar"
+    write(path, replace(with_expressions(avatar), clips=avatar.clips), storage="f16")
+    reported = story("MovesFace", path)
+    shut, opened, *_ = (line for [line] in reported["gui"])
+    assert shut.endswith("foldout Expressions")
+    names = ("jawOpen", "eyeBlinkLeft", "nothing", "Mund auf")
+    assert opened.split("foldout Expressions; ")[1].split("; ")[:4] == [f"slider {name} 0 of 0 to 1" for name in names]
+    assert reported["moved"] == [[weight, "1", str(len(FRAME_ORDER) + 3)] for weight in ("0.25", "0.5")]
+    assert reported["reset"] == [["0"]]
 
 
 def test_a_clip_plays_in_the_scene_view_until_something_ends_it(story: Story, sound: Path) -> None:

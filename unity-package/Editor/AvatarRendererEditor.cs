@@ -18,6 +18,7 @@ namespace Mua.Editor
             "Share of the pose that the avatar's training did not show; 0 % is a pose like those of training.");
 
         private SerializedProperty clip;
+        private bool showsExpressions;
         private bool previews; // the clip in the scene view; nothing of it is saved
         private double previewed; // seconds of the editor's clock
 
@@ -116,6 +117,10 @@ namespace Mua.Editor
             {
                 Scrub(shown);
             }
+            if (shown.ExpressionNames.Count > 0)
+            {
+                ShowExpressions(shown);
+            }
             if (shown.State == AvatarState.Ready && Application.isPlaying)
             {
                 EditorGUILayout.LabelField(Outside, new GUIContent((100 * shown.OutsideTraining).ToString("F0") + " %"));
@@ -141,6 +146,31 @@ namespace Mua.Editor
             if (EditorGUI.EndChangeCheck())
             {
                 shown.Frame = frame;
+                Redraw();
+            }
+        }
+
+        /// <summary>A slider for each expression, to look at; nothing of it is saved.</summary>
+        private void ShowExpressions(AvatarRenderer shown)
+        {
+            showsExpressions = EditorGUILayout.Foldout(showsExpressions, "Expressions");
+            if (!showsExpressions)
+            {
+                return;
+            }
+            foreach (string name in shown.ExpressionNames)
+            {
+                EditorGUI.BeginChangeCheck();
+                float weight = EditorGUILayout.Slider(name, shown.GetExpression(name), 0, 1);
+                if (EditorGUI.EndChangeCheck())
+                {
+                    shown.SetExpression(name, weight);
+                    Redraw();
+                }
+            }
+            if (GUILayout.Button("Reset Expressions"))
+            {
+                shown.ResetExpressions();
                 Redraw();
             }
         }

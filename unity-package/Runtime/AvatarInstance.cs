@@ -140,7 +140,7 @@ namespace Mua
                 Warn("the mesh whose blend shapes moved the avatar's face was destroyed; its clip moves it in their place.");
             }
             hasMoved |= motion.Sample(Time.timeAsDouble, step);
-            motion.Express(Time.realtimeSinceStartupAsDouble); // a face moves while the game is paused
+            motion.Express(Time.realtimeSinceStartupAsDouble, !Application.isPlaying); // a face moves while the game is paused
             Decoded.Stand(motion.Pose.Current, motion.Pose.CurrentTranslations, placement.Value);
             spreads = owner.SpreadDecode && Application.isPlaying
                 && (Views & AvatarViews.Geometry) == 0; // which is of the finest level

@@ -76,11 +76,11 @@ namespace Mua
             return true;
         }
 
-        /// <summary>Takes the weights of expressions of a moment.</summary>
-        public void Express(double seconds)
+        /// <summary>Takes the weights of expressions of a moment; `always`: however soon after others.</summary>
+        public void Express(double seconds, bool always)
         {
             face?.Read();
-            Pose.Express(seconds);
+            Pose.Express(seconds, always);
         }
 
         /// <summary>

@@ -180,13 +180,13 @@ namespace Mua
 
         /// <summary>
         /// Makes another decode due where weights were set since the last, at most one in each frame of the avatar's rate. One
-        /// that is foreseen takes them with it.
+        /// that is foreseen takes them with it. `always`: at once, for an editor that asks for single frames.
         /// </summary>
-        public void Express(double seconds)
+        public void Express(double seconds, bool always)
         {
             double step = seconds - now, age = (seconds - expressed) * rate;
             bool isNew = Due != known;
-            bool isEarly = age >= 0 && age < (Following == Due ? 1 : LongestForeseen) - FrameSlack;
+            bool isEarly = !always && age >= 0 && age < (Following == Due ? 1 : LongestForeseen) - FrameSlack;
             now = seconds;
             if (!isNew && !isEarly && Expressions.HasChanged)
             {

@@ -239,6 +239,30 @@ namespace Mua.Editor
             Say("alive", Recorder.AliveCount);
         }
 
+        /// <summary>The inspector of a component with a face: each slider is moved, with one displayed frame after it.</summary>
+        private static void MovesFace()
+        {
+            Place(files);
+            AvatarRenderer shown = AvatarObject.Create(AvatarObject.Find(), null, Vector3.zero).GetComponent<AvatarRenderer>();
+            new GameObject("camera").AddComponent<Camera>();
+            var inspector = Inspectors.Open<AvatarRendererEditor>(shown);
+            Show(inspector);
+            PlayerLoop.Frame(1);
+            Gui.Answers["Expressions"] = true;
+            Show(inspector);
+            foreach (float weight in new[] { 0.25f, 0.5f })
+            {
+                Gui.Answers["jawOpen"] = weight;
+                int updates = Asked.Updates, dispatches = Recorder.Dispatches;
+                Show(inspector);
+                PlayerLoop.Frame(0.001f);
+                Say("moved", shown.GetExpression("jawOpen"), Asked.Updates - updates, Recorder.Dispatches - dispatches);
+            }
+            Gui.Answers["Reset Expressions"] = true;
+            Show(inspector);
+            Say("reset", shown.GetExpression("jawOpen"));
+        }
+
         /// <summary>Plays the clip in the scene view, at twice its speed, until each of what ends that.</summary>
         private static void Previews()
         {

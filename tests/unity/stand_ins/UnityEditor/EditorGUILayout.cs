@@ -47,6 +47,16 @@ namespace UnityEditor
             Gui.Write("popup", displayedOptions[selectedIndex] + " of " + string.Join(", ", displayedOptions));
             return Gui.Answer(label, selectedIndex);
         }
+        public static bool Foldout(bool foldout, string content)
+        {
+            Gui.Write("foldout", content);
+            return Gui.Answer(content, foldout);
+        }
+        public static float Slider(string label, float value, float leftValue, float rightValue, params GUILayoutOption[] options)
+        {
+            Gui.Write("slider", label + " " + value.ToString("R") + " of " + leftValue + " to " + rightValue);
+            return Gui.Answer(label, value);
+        }
         public static int IntSlider(string label, int value, int leftValue, int rightValue, params GUILayoutOption[] options)
         {
             Gui.Write("slider", value + " of " + leftValue + " to " + rightValue);
