@@ -14,11 +14,13 @@ from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.avatar.model import Branch, Coarse, DetailBand, Layer, Mlp
 from mua.channels import APPEARANCE, ATTRIBUTES, CHANNELS, GEOMETRY
+from mua.limits import LARGEST
 from mua.pose.encoding import Components
+from mua.rig.expressions import Expressions
 
 # Steps of the static offset, measured in docs/research/storage.md; that of an offset is of the figure's height.
 STEPS = {"offset": 2.0**-16, "rotation": 2.0**-8, "scale": 2.0**-7, "opacity": 2.0**-6, "SH": 2.0**-8}
-STATIC, LL, DETAILS, MEANS, LAST, HIDDEN, MESH = 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 2.0  # times the step that follows
+STATIC, LL, DETAILS, MEANS, LAST, HIDDEN, MESH = 1.0, 1.0, 0.8, 0.8, 1.0, 1.0, 2.0  # times the step that follows
 COARSEST = 1.0  # step, of what hardly counts
 POSES = 512  # random ones, by which networks are measured
 FAINT = 1 / 16  # of a layer's mean output, below which units count as if they were that large
@@ -28,7 +30,7 @@ DEVIATIONS = 6.0  # of a component of poses, between the ends of its range
 
 
 def rounded(avatar: Avatar) -> Avatar:
-    """The same avatar with its bases, its static offset and the weights of its MLPs in steps.
+    """The same avatar with its bases, its static offset, the weights of its MLPs and its expressions in steps.
 
     What a triangle map gives back, and what a person reads, stays as it is.
     """
@@ -39,7 +41,12 @@ def rounded(avatar: Avatar) -> Avatar:
         coarse=_coarse(avatar.coarse, MESH * steps[0], poses),
         geometry=_branch(avatar.geometry, steps[GEOMETRY], poses),
         appearance=_branch(avatar.appearance, steps[APPEARANCE], poses),
+        rig=replace(avatar.rig, expressions=_expressions(avatar.rig.expressions, MESH * steps[0])),
     )
+
+
+def _expressions(expressions: Expressions | None, step: float) -> Expressions | None:
+    return expressions and replace(expressions, offsets=in_steps(expressions.offsets, step))
 
 
 def _expressions(expressions: Expressions | None, step: float) -> Expressions | None:
@@ -114,10 +121,13 @@ def _branch(
 ) -> Branch:
     mlp, sizes = _mlp(branch.mlp, poses, _reach(branch, steps))
     ranks = np.array(branch.ranks)
-    ll, *levels = (part.reshape(branch.channels, -1) for part in np.split(sizes, np.cumsum(branch.channels * ranks)[:-1]))
+    ll, *levels = (
+        part.reshape(branch.channels, -1) for part in np.split(sizes, np.cumsum(branch.channels * ranks)[:-1])
+    )
     return replace(
         branch,
         mlp=mlp,
+        ll_mean=in_steps(branch.ll_mean, MEANS * steps[:, None, None]),
         ll_basis=_planes_in_steps(branch.ll_basis, LL * steps[:, None] / ll),
         details=tuple(_detail(band, steps[:, None], own) for band, own in zip(branch.details, levels, strict=True)),
         static=in_steps(branch.static, STATIC * steps[:, None]),
@@ -170,10 +180,12 @@ def _balanced(
     powers = [np.rint(np.log2(_size(np.maximum(out, 0)))).astype(int) for _, out in _outputs(mlp, poses)]
     before = [np.zeros(mlp[0].weight.shape[1], int), *powers[:-1]]
     after = [*powers[:-1], np.zeros(len(mlp[-1].bias), int)]
-    return tuple(
+    balanced = tuple(
         Layer(np.ldexp(layer.weight, into - out[:, None]), np.ldexp(layer.bias, -out))
         for layer, into, out in zip(mlp, before, after, strict=True)
     )
+    largest = max(float(np.abs(part).max()) for layer in balanced for part in (layer.weight, layer.bias))
+    return balanced if largest <= LARGEST else mlp
 
 
 def _outputs(mlp: Mlp, poses: Array) -> Iterator[tuple[Array, Array]]:
@@ -185,9 +197,9 @@ def _outputs(mlp: Mlp, poses: Array) -> Iterator[tuple[Array, Array]]:
 
 
 def _size(values: Array) -> Array:
-    """Root mean squares [M] over poses [P, M]; those far below their mean are raised."""
+    """Root mean squares [M] over poses [P, M]; those far below their mean are raised, and 1 where all are 0."""
     sizes = np.sqrt(np.mean(values.astype(np.float64) ** 2, axis=0))
-    return _nonzero(np.maximum(sizes, FAINT * sizes.mean()))
+    return np.maximum(sizes, FAINT * sizes.mean()) if sizes.any() else np.ones_like(sizes)
 
 
 def _norm(values: Array) -> Array:
