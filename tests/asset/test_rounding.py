@@ -8,10 +8,12 @@ import numpy as np
 import pytest
 from synthetic_avatar import synthetic_avatar
 
+from mua.arrays import Array
 from mua.asset.read import read
-from mua.asset.rounding import channel_steps, in_steps, rounded
+from mua.asset.rounding import channel_steps, in_steps, rounded, rows_in_steps
 from mua.avatar.camera import orbit
 from mua.avatar.decode import decode_clip_frame
+from mua.avatar.model import Layer, Mlp
 from mua.avatar.rendering import frame_bounds, render_premultiplied
 from mua.channels import ATTRIBUTES
 
@@ -38,13 +40,58 @@ def test_the_step_of_an_offset_grows_with_the_figure() -> None:
     np.testing.assert_array_equal(giant[others], figure[others])
 
 
+def test_no_zero_is_negative() -> None:
+    """Which would be another byte."""
+    assert not np.signbit(in_steps(np.array([-0.1, 0.1, -0.0]), 1.0)).any()
+
+
+def test_a_row_of_more_steps_than_a_byte_holds_has_larger_ones_where_few_do() -> None:
+    values = np.full((20, 64), 100.0)
+    few, many = values.copy(), values.copy()
+    few[3, 5], many[:, 5] = 2.6 * 127, 2.6 * 127
+    np.testing.assert_array_equal(rows_in_steps(few, np.ones((20, 1)))[3, 5], 332)  # a multiple of 4
+    np.testing.assert_array_equal(np.delete(rows_in_steps(few + 1, np.ones((20, 1))), 3, axis=0), 101)
+    np.testing.assert_array_equal(rows_in_steps(many, np.ones((20, 1)))[:, 5], 330)
+
+
+def test_an_mlp_with_units_of_other_sizes_gives_the_same_numbers() -> None:
+    """Units are scaled to about 1, so that one step suits all weights of a row."""
+    avatar = synthetic_avatar()
+    first, *others, last = avatar.geometry.mlp
+    sizes = 2.0 ** np.random.default_rng(0).integers(-1, 2, len(first.bias))
+    second = (others or [last])[0]
+    scaled = (
+        Layer(first.weight * sizes[:, None], first.bias * sizes),
+        Layer(second.weight / sizes, second.bias),
+        *([*others[1:], last] if others else []),
+    )
+    found = [
+        rounded(replace(avatar, geometry=replace(avatar.geometry, mlp=mlp))).geometry.mlp
+        for mlp in (avatar.geometry.mlp, scaled)
+    ]
+    for one, other in zip(*found, strict=True):
+        np.testing.assert_array_equal(one.weight, other.weight)
+        np.testing.assert_allclose(one.bias, other.bias, rtol=1e-6)
+
+
+def test_texels_smaller_than_a_pixel_are_rounded_more_coarsely() -> None:
+    avatar = synthetic_avatar()
+    height = float(np.ptp(avatar.coarse.mean, axis=0).max())
+    errors = []
+    for share in (1 / 100, 1 / 1600):
+        texels = replace(avatar.rig.texels, length=share * height)
+        found = rounded(replace(avatar, rig=replace(avatar.rig, texels=texels)))
+        errors.append(np.abs(found.appearance.static - avatar.appearance.static).mean())
+    assert errors[1] > 3 * errors[0]
+
+
 def test_what_is_rounded_stays_so() -> None:
     once = rounded(synthetic_avatar())
     twice = rounded(once)
     for branch in ("geometry", "appearance"):
         first, second = getattr(once, branch), getattr(twice, branch)
         np.testing.assert_array_equal(first.static, second.static)
-        np.testing.assert_array_equal(first.ll_basis, second.ll_basis)
+        np.testing.assert_array_equal(first.ll_mean, second.ll_mean)
 
 
 def test_a_row_that_moves_texels_little_is_rounded_coarsely() -> None:
@@ -52,10 +99,25 @@ def test_a_row_that_moves_texels_little_is_rounded_coarsely() -> None:
     avatar = synthetic_avatar()
     basis = avatar.geometry.ll_basis.copy()
     basis[0, 1] *= 1e-4
-    faint = rounded(replace(avatar, geometry=replace(avatar.geometry, ll_basis=basis))).geometry.mlp[-1].weight
-    strong = avatar.geometry.mlp[-1].weight
-    error = np.abs(faint - strong).max(axis=1)
-    assert error[1] > 100 * error[0]
+    geometry = replace(avatar.geometry, ll_basis=basis)
+    error = np.abs(outputs(rounded(replace(avatar, geometry=geometry)).geometry.mlp) - outputs(geometry.mlp)).max(
+        axis=0
+    )
+    assert error[1] > 5 * error[0]
+    geometry = replace(avatar.geometry, ll_basis=1e3 * avatar.geometry.ll_basis)
+    finer = np.abs(outputs(rounded(replace(avatar, geometry=geometry)).geometry.mlp) - outputs(geometry.mlp)).max(
+        axis=0
+    )
+    assert finer[0] < error[0] / 5
+
+
+def outputs(mlp: Mlp) -> Array:
+    """Of random inputs [100, M]."""
+    x = np.random.default_rng(0).normal(size=(100, mlp[0].weight.shape[1]))
+    for layer in mlp:
+        x = x @ layer.weight.T + layer.bias
+        x = x if layer is mlp[-1] else np.maximum(x, 0)
+    return x
 
 
 def test_a_factor_is_rounded_as_finely_as_the_other_is_large() -> None:

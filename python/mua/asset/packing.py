@@ -18,23 +18,16 @@ from mua.limits import UNPACKED_ROOM, UNPACKED_TIMES
 
 RAW = -15  # zlib's word for a deflate stream of the largest window without a header
 GAIN = 0.95  # of its bytes, above which a tensor is not worth unpacking
-STRATEGIES = (zlib.Z_DEFAULT_STRATEGY, zlib.Z_FILTERED, zlib.Z_HUFFMAN_ONLY, zlib.Z_RLE)  # none is the best of all
+STRATEGIES = (zlib.Z_DEFAULT_STRATEGY, zlib.Z_FILTERED, zlib.Z_HUFFMAN_ONLY)  # none is the best of all
 HALF_BITS = 11  # of a half's fraction, with the one that is not stored
 MOST_STEPS = 127
+LEAST_ROW = 64  # bytes of a row, beside which the four of its scale count little
 MEMORY = 9  # the most that zlib may take, for the longest blocks
 
 
 def packed(tensor: Tree) -> Tree:
     """The tensor as a file for the network holds it, the same numbers; unchanged where that saves nothing."""
-    return min(map(_deflated, (tensor, *_in_bytes(tensor))), key=_stored)
-
-
-def _stored(tensor: Tree) -> int:
-    """Bytes of its elements and scales."""
-    return tensor["data"].nbytes + (tensor["scale"].nbytes if "scale" in tensor else 0)
-
-
-def _deflated(tensor: Tree) -> Tree:
+    tensor = _in_bytes(tensor)
     planes = tensor["data"].reshape(-1, DTYPES[tensor["type"]].itemsize).T
     last = len(planes) - 1
     stream = b"".join(_smallest(plane.tobytes(), ends=number == last) for number, plane in enumerate(planes))
@@ -52,18 +45,19 @@ def _smallest(plane: bytes, *, ends: bool) -> bytes:
     return min(parts, key=len)
 
 
-def _in_bytes(tensor: Tree) -> Iterator[Tree]:
-    """The same numbers as i8, by rows of several lengths, where halves are small multiples of a row's power of two."""
+def _in_bytes(tensor: Tree) -> Tree:
+    """The same numbers as i8, by the fewest rows, where halves are small multiples of a row's power of two."""
     if tensor["type"] != "F16" or not tensor["data"].size:
-        return
+        return tensor
     values = tensor["data"].view(DTYPES["F16"]).astype(np.float32)
     units = _lowest_bits(values)
     for rows in sorted({math.prod(tensor["shape"][:axis].tolist()) for axis in range(len(tensor["shape"]))}):
         scale = units.reshape(rows, -1).min(axis=1)
         whole = values.reshape(rows, -1) / scale[:, None]
-        if np.abs(whole).max() <= MOST_STEPS:
-            yield {**tensor, "type": "I8", "data": whole.astype(np.int8).reshape(-1).view(np.uint8), "scale": scale}
-            return
+        if rows * LEAST_ROW <= values.size and np.abs(whole).max() <= MOST_STEPS:
+            data = whole.astype(np.int8).reshape(-1).view(np.uint8)
+            return {**tensor, "type": "I8", "data": data, "scale": scale}
+    return tensor
 
 
 def _lowest_bits(values: Array) -> Array:

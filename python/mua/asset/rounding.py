@@ -20,27 +20,28 @@ from mua.rig.expressions import Expressions
 
 # Steps of the static offset, measured in docs/research/storage.md; that of an offset is of the figure's height.
 STEPS = {"offset": 2.0**-16, "rotation": 2.0**-8, "scale": 2.0**-7, "opacity": 2.0**-6, "SH": 2.0**-8}
-STATIC, LL, DETAILS, MEANS, LAST, HIDDEN, MESH = 1.0, 1.0, 0.8, 0.8, 1.0, 1.0, 2.0  # times the step that follows
-COARSEST = 1.0  # step, of what hardly counts
+STATIC, LL, DETAILS, MEANS, LAST, HIDDEN, MESH = 1.0, 1.0, 0.8, 0.8, 1.0, 1.0, 1.0  # times the step that follows
+FIGURE = 400  # pixels along a figure; errors of texels that are smaller average out
 POSES = 512  # random ones, by which networks are measured
 FAINT = 1 / 16  # of a layer's mean output, below which units count as if they were that large
 MOST_STEPS = 127  # of a byte, either way
-RAISED = 1.5  # times the squared error of a tensor's steps, that storing it as bytes may cost
+RAISED = 2.0  # times the squared error of a tensor's steps, that storing it as bytes may cost
 DEVIATIONS = 6.0  # of a component of poses, between the ends of its range
 
 
-def rounded(avatar: Avatar) -> Avatar:
+def rounded(avatar: Avatar, rounding: float = 1.0) -> Avatar:
     """The same avatar with its bases, its static offset, the weights of its MLPs and its expressions in steps.
 
-    What a triangle map gives back, and what a person reads, stays as it is.
+    What a triangle map gives back, and what a person reads, stays as it is. All steps are times `rounding`.
     """
     height = float(np.ptp(avatar.coarse.mean, axis=0).max(initial=0)) or 1.0
-    steps, poses = channel_steps(height), _poses(avatar.components)
+    steps, poses = rounding * channel_steps(height), _poses(avatar.components)
+    averaged = max(1.0, height / (FIGURE * (avatar.rig.texels.length or np.inf)))
     return replace(
         avatar,
         coarse=_coarse(avatar.coarse, MESH * steps[0], poses),
-        geometry=_branch(avatar.geometry, steps[GEOMETRY], poses),
-        appearance=_branch(avatar.appearance, steps[APPEARANCE], poses),
+        geometry=_branch(avatar.geometry, steps[GEOMETRY], averaged, poses),
+        appearance=_branch(avatar.appearance, steps[APPEARANCE], averaged, poses),
         rig=replace(avatar.rig, expressions=_expressions(avatar.rig.expressions, MESH * steps[0])),
     )
 
@@ -90,7 +91,7 @@ def _planes_in_steps(
 
 
 def _powers(steps: Array | float) -> Array:
-    return np.asarray(np.exp2(np.rint(np.log2(np.minimum(steps, COARSEST)))))
+    return np.asarray(np.exp2(np.rint(np.log2(steps))))
 
 
 def _multiples(values: Array, powers: Array) -> Array:
@@ -117,6 +118,7 @@ def _coarse(
 def _branch(
     branch: Branch,
     steps: Array,  # [C]
+    averaged: float,  # texels along a side of what a person sees as one
     poses: Array,  # [P, K]
 ) -> Branch:
     mlp, sizes = _mlp(branch.mlp, poses, _reach(branch, steps))
@@ -130,7 +132,7 @@ def _branch(
         ll_mean=in_steps(branch.ll_mean, MEANS * steps[:, None, None]),
         ll_basis=_planes_in_steps(branch.ll_basis, LL * steps[:, None] / ll),
         details=tuple(_detail(band, steps[:, None], own) for band, own in zip(branch.details, levels, strict=True)),
-        static=in_steps(branch.static, STATIC * steps[:, None]),
+        static=in_steps(branch.static, STATIC * averaged * steps[:, None]),
     )
 
 
