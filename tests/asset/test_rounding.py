@@ -54,24 +54,22 @@ def test_a_row_of_more_steps_than_a_byte_holds_has_larger_ones_where_few_do() ->
     np.testing.assert_array_equal(rows_in_steps(many, np.ones((20, 1)))[:, 5], 330)
 
 
-def test_an_mlp_with_units_of_other_sizes_gives_the_same_numbers() -> None:
+def test_an_mlp_with_units_of_other_sizes_is_rounded_as_well() -> None:
     """Units are scaled to about 1, so that one step suits all weights of a row."""
     avatar = synthetic_avatar()
     first, *others, last = avatar.geometry.mlp
-    sizes = 2.0 ** np.random.default_rng(0).integers(-1, 2, len(first.bias))
+    sizes = 2.0 ** np.random.default_rng(0).integers(-6, 6, len(first.bias))
     second = (others or [last])[0]
     scaled = (
         Layer(first.weight * sizes[:, None], first.bias * sizes),
         Layer(second.weight / sizes, second.bias),
         *([*others[1:], last] if others else []),
     )
-    found = [
-        rounded(replace(avatar, geometry=replace(avatar.geometry, mlp=mlp))).geometry.mlp
-        for mlp in (avatar.geometry.mlp, scaled)
-    ]
-    for one, other in zip(*found, strict=True):
-        np.testing.assert_array_equal(one.weight, other.weight)
-        np.testing.assert_allclose(one.bias, other.bias, rtol=1e-6)
+    errors = []
+    for mlp in (avatar.geometry.mlp, scaled):
+        found = rounded(replace(avatar, geometry=replace(avatar.geometry, mlp=mlp))).geometry.mlp
+        errors.append(np.abs(outputs(found) - outputs(mlp)).mean())
+    assert errors[1] < 1.2 * errors[0]
 
 
 def test_texels_smaller_than_a_pixel_are_rounded_more_coarsely() -> None:
