@@ -20,8 +20,8 @@ from mua.rig.expressions import Expressions
 
 # Steps of the static offset, measured in docs/research/storage.md; that of an offset is of the figure's height.
 STEPS = {"offset": 2.0**-16, "rotation": 2.0**-8, "scale": 2.0**-7, "opacity": 2.0**-6, "SH": 2.0**-8}
-STATIC, LL, DETAILS, MEANS, LAST, HIDDEN, MESH = 1.0, 1.0, 0.8, 0.8, 1.0, 1.0, 1.0  # times the step that follows
-FIGURE = 400  # pixels along a figure; errors of texels that are smaller average out
+STATIC, LL, DETAILS, MEANS, LAST, HIDDEN, MESH = 1.0, 1.0, 0.8, 1.0, 1.0, 1.0, 1.0  # times the step that follows
+FIGURE = 400  # pixels along a figure: errors of texels that are smaller than one average out
 POSES = 512  # random ones, by which networks are measured
 FAINT = 1 / 16  # of a layer's mean output, below which units count as if they were that large
 MOST_STEPS = 127  # of a byte, either way
@@ -36,12 +36,12 @@ def rounded(avatar: Avatar, rounding: float = 1.0) -> Avatar:
     """
     height = float(np.ptp(avatar.coarse.mean, axis=0).max(initial=0)) or 1.0
     steps, poses = rounding * channel_steps(height), _poses(avatar.components)
-    averaged = max(1.0, height / (FIGURE * (avatar.rig.texels.length or np.inf)))
+    fine = max(1.0, height / (FIGURE * (avatar.rig.texels.length or np.inf))) ** 0.5
     return replace(
         avatar,
         coarse=_coarse(avatar.coarse, MESH * steps[0], poses),
-        geometry=_branch(avatar.geometry, steps[GEOMETRY], averaged, poses),
-        appearance=_branch(avatar.appearance, steps[APPEARANCE], averaged, poses),
+        geometry=_branch(avatar.geometry, fine * steps[GEOMETRY], fine, poses),
+        appearance=_branch(avatar.appearance, fine * steps[APPEARANCE], fine, poses),
         rig=replace(avatar.rig, expressions=_expressions(avatar.rig.expressions, MESH * steps[0])),
     )
 
@@ -118,7 +118,7 @@ def _coarse(
 def _branch(
     branch: Branch,
     steps: Array,  # [C]
-    averaged: float,  # texels along a side of what a person sees as one
+    fine: float,  # times by which errors of single texels may be larger than those of many
     poses: Array,  # [P, K]
 ) -> Branch:
     mlp, sizes = _mlp(branch.mlp, poses, _reach(branch, steps))
@@ -132,7 +132,7 @@ def _branch(
         ll_mean=in_steps(branch.ll_mean, MEANS * steps[:, None, None]),
         ll_basis=_planes_in_steps(branch.ll_basis, LL * steps[:, None] / ll),
         details=tuple(_detail(band, steps[:, None], own) for band, own in zip(branch.details, levels, strict=True)),
-        static=in_steps(branch.static, STATIC * averaged * steps[:, None]),
+        static=in_steps(branch.static, STATIC * fine * steps[:, None]),
     )
 
 
