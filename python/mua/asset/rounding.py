@@ -103,7 +103,8 @@ def _poses(components: Components) -> Array:
     """Inputs of the networks [POSES, K] about as training had them, always the same."""
     low, high = components.ranges
     spread = (high - low) / DEVIATIONS
-    return np.clip(np.random.default_rng(0).normal(size=(POSES, len(spread))) * spread, low, high)
+    drawn = np.random.default_rng(0).normal(size=(POSES, len(spread)))
+    return np.asarray(np.clip(drawn * spread, low, high))
 
 
 def _coarse(
@@ -206,7 +207,7 @@ def _size(values: Array) -> Array:
 
 def _norm(values: Array) -> Array:
     """Along the last axis, which stays."""
-    return np.sqrt((values.astype(np.float64) ** 2).sum(axis=-1, keepdims=True))
+    return np.asarray(np.sqrt((values.astype(np.float64) ** 2).sum(axis=-1, keepdims=True)))
 
 
 def _nonzero(values: Array) -> Array:
