@@ -48,5 +48,24 @@ def test_what_has_the_storage_already_is_refused(command: Commands, avatar_file:
     assert not again.exists()
 
 
+def test_coarser_rounding_is_a_smaller_file_farther_from_the_original(
+    command: Commands, avatar_file: Path, tmp_path: Path
+) -> None:
+    files = {factor: tmp_path / f"{factor}.muaavatar" for factor in (0.25, 1, 4)}
+    for factor, file in files.items():
+        assert command("pack", avatar_file, "-o", file, *(("--rounding", factor) if factor != 1 else ())).status == 0
+    sizes = [file.stat().st_size for file in files.values()]
+    assert sizes == sorted(sizes, reverse=True)
+    assert len(set(sizes)) == 3
+    original = read(avatar_file).appearance.static
+    errors = [np.abs(read(file).appearance.static - original).mean() for file in files.values()]
+    assert errors == sorted(errors)
+
+
+def test_rounding_of_a_storage_that_has_none_is_refused(command: Commands, avatar_file: Path, tmp_path: Path) -> None:
+    ended = command("pack", avatar_file, "--storage", "i8", "--rounding", 2, "-o", tmp_path / "a.muaavatar")
+    assert ended.sentence == "error: --rounding 2: only applies to --storage packed, not to i8"
+
+
 def test_an_absent_file_is_refused(command: Commands, tmp_path: Path) -> None:
     assert "absent.muaavatar" in command("pack", tmp_path / "absent.muaavatar").sentence

@@ -15,7 +15,7 @@ from mua.arrays import Array
 from mua.asset.flatbuffer import FormatError, parse
 from mua.asset.packing import packed, tensors, unpack
 from mua.asset.read import parse_checked, read
-from mua.asset.tensors import Element, pack, pack_indices, stored
+from mua.asset.tensors import Element, pack, pack_indices, reals, stored
 from mua.asset.write import encode, write
 from mua.limits import UNPACKED_ROOM, UNPACKED_TIMES
 
@@ -46,8 +46,31 @@ def test_what_is_packed_is_given_back(element: Element, shape: tuple[int, ...]) 
     tree = {"bounds": {"type": "F32", **packed(plain)}}
     assert tree["bounds"]["data"].nbytes < plain["data"].nbytes / 2
     unpack(tree, 1 << 20)
-    np.testing.assert_array_equal(tree["bounds"]["data"], plain["data"])
-    np.testing.assert_array_equal(stored(tree["bounds"], "bounds"), stored(plain, "bounds"))
+    np.testing.assert_array_equal(reals(tree["bounds"], "bounds", shape), reals(plain, "bounds", shape))
+
+
+@pytest.mark.parametrize(
+    ("most", "kind", "scales"),
+    [(127, "I8", [0.25]), (-127, "I8", [0.25]), (128, "I8", [0.25, 0.5]), (129, "F16", None)],
+    ids=["the most", "the least", "one row twice as coarse", "too many"],
+)
+def test_small_multiples_of_a_rows_power_of_two_are_bytes(most: int, kind: str, scales: list[float] | None) -> None:
+    """128 steps are 64 that are twice as large, where all of a row's numbers are multiples of those."""
+    steps = np.zeros((2, 100))
+    steps[0, :2], steps[1, :2] = (3, -1), (most, 6)
+    plain = pack(steps / 4, "f16")
+    tensor = packed(plain)
+    assert tensor["type"] == kind
+    assert (None if scales is None else tensor["scale"].tolist()) == scales
+    tree = {"bounds": tensor}
+    unpack(tree, 1 << 20)
+    np.testing.assert_array_equal(reals(tensor, "bounds", (2, 100)), reals(plain, "bounds", (2, 100)))
+
+
+def test_bytes_whose_scales_would_be_longer_stay_halves() -> None:
+    """Rows of 32 numbers, each with a step of its own."""
+    steps = np.random.default_rng(0).integers(-100, 100, (64, 32)) | 1
+    assert packed(pack(steps * 2.0 ** -(np.arange(64) % 16)[:, None], "f16"))["type"] == "F16"
 
 
 def test_a_tensor_that_does_not_shrink_stays_as_it_is() -> None:

@@ -8,10 +8,12 @@ import numpy as np
 import pytest
 from synthetic_avatar import synthetic_avatar
 
+from mua.arrays import Array
 from mua.asset.read import read
-from mua.asset.rounding import channel_steps, in_steps, rounded
+from mua.asset.rounding import channel_steps, in_steps, rounded, rows_in_steps
 from mua.avatar.camera import orbit
 from mua.avatar.decode import decode_clip_frame
+from mua.avatar.model import Layer, Mlp
 from mua.avatar.rendering import frame_bounds, render_premultiplied
 from mua.channels import ATTRIBUTES
 
@@ -22,8 +24,8 @@ LOSS = 0.1  # dB
 STEADY = 0.999  # of the pixels; in a few, two splats of like depth change places, whatever moved them
 
 
-@pytest.mark.parametrize(("step", "power"), [(1.0, 1.0), (0.9, 0.5), (0.26, 0.25), (3e-5, 2.0**-16)])
-def test_values_become_the_nearest_multiples_of_a_power_of_two_at_or_below_the_step(step: float, power: float) -> None:
+@pytest.mark.parametrize(("step", "power"), [(1.0, 1.0), (0.9, 1.0), (0.26, 0.25), (3e-5, 2.0**-15)])
+def test_values_become_the_nearest_multiples_of_the_power_of_two_nearest_to_the_step(step: float, power: float) -> None:
     values = np.random.default_rng(0).normal(size=1000)
     found = in_steps(values, step)
     np.testing.assert_array_equal(found / power, np.rint(found / power))
@@ -38,13 +40,56 @@ def test_the_step_of_an_offset_grows_with_the_figure() -> None:
     np.testing.assert_array_equal(giant[others], figure[others])
 
 
+def test_no_zero_is_negative() -> None:
+    """Which would be another byte."""
+    assert not np.signbit(in_steps(np.array([-0.1, 0.1, -0.0]), 1.0)).any()
+
+
+def test_a_row_of_more_steps_than_a_byte_holds_has_larger_ones_where_few_do() -> None:
+    values = np.full((20, 64), 100.0)
+    few, many = values.copy(), values.copy()
+    few[3, 5], many[:, 5] = 2.6 * 127, 2.6 * 127
+    np.testing.assert_array_equal(rows_in_steps(few, np.ones((20, 1)))[3, 5], 332)  # a multiple of 4
+    np.testing.assert_array_equal(np.delete(rows_in_steps(few + 1, np.ones((20, 1))), 3, axis=0), 101)
+    np.testing.assert_array_equal(rows_in_steps(many, np.ones((20, 1)))[:, 5], 330)
+
+
+def test_an_mlp_with_units_of_other_sizes_is_rounded_as_well() -> None:
+    """Units are scaled to about 1, so that one step suits all weights of a row."""
+    avatar = synthetic_avatar()
+    first, *others, last = avatar.geometry.mlp
+    sizes = 2.0 ** np.random.default_rng(0).integers(-6, 6, len(first.bias))
+    second = (others or [last])[0]
+    scaled = (
+        Layer(first.weight * sizes[:, None], first.bias * sizes),
+        Layer(second.weight / sizes, second.bias),
+        *([*others[1:], last] if others else []),
+    )
+    errors = []
+    for mlp in (avatar.geometry.mlp, scaled):
+        found = rounded(replace(avatar, geometry=replace(avatar.geometry, mlp=mlp))).geometry.mlp
+        errors.append(np.abs(outputs(found) - outputs(mlp)).mean())
+    assert errors[1] < 1.2 * errors[0]
+
+
+def test_texels_smaller_than_a_pixel_are_rounded_more_coarsely() -> None:
+    avatar = synthetic_avatar()
+    height = float(np.ptp(avatar.coarse.mean, axis=0).max())
+    errors = []
+    for share in (1 / 100, 1 / 1600):
+        texels = replace(avatar.rig.texels, length=share * height)
+        found = rounded(replace(avatar, rig=replace(avatar.rig, texels=texels)))
+        errors.append(np.abs(found.appearance.static - avatar.appearance.static).mean())
+    assert errors[1] > 3 * errors[0]
+
+
 def test_what_is_rounded_stays_so() -> None:
     once = rounded(synthetic_avatar())
     twice = rounded(once)
     for branch in ("geometry", "appearance"):
         first, second = getattr(once, branch), getattr(twice, branch)
         np.testing.assert_array_equal(first.static, second.static)
-        np.testing.assert_array_equal(first.ll_basis, second.ll_basis)
+        np.testing.assert_array_equal(first.ll_mean, second.ll_mean)
 
 
 def test_a_row_that_moves_texels_little_is_rounded_coarsely() -> None:
@@ -52,10 +97,25 @@ def test_a_row_that_moves_texels_little_is_rounded_coarsely() -> None:
     avatar = synthetic_avatar()
     basis = avatar.geometry.ll_basis.copy()
     basis[0, 1] *= 1e-4
-    faint = rounded(replace(avatar, geometry=replace(avatar.geometry, ll_basis=basis))).geometry.mlp[-1].weight
-    strong = avatar.geometry.mlp[-1].weight
-    error = np.abs(faint - strong).max(axis=1)
-    assert error[1] > 100 * error[0]
+    geometry = replace(avatar.geometry, ll_basis=basis)
+    error = np.abs(outputs(rounded(replace(avatar, geometry=geometry)).geometry.mlp) - outputs(geometry.mlp)).max(
+        axis=0
+    )
+    assert error[1] > 5 * error[0]
+    geometry = replace(avatar.geometry, ll_basis=1e3 * avatar.geometry.ll_basis)
+    finer = np.abs(outputs(rounded(replace(avatar, geometry=geometry)).geometry.mlp) - outputs(geometry.mlp)).max(
+        axis=0
+    )
+    assert finer[0] < error[0] / 5
+
+
+def outputs(mlp: Mlp) -> Array:
+    """Of random inputs [100, M]."""
+    x = np.random.default_rng(0).normal(size=(100, mlp[0].weight.shape[1]))
+    for layer in mlp:
+        x = x @ layer.weight.T + layer.bias
+        x = x if layer is mlp[-1] else np.maximum(x, 0)
+    return x
 
 
 def test_a_factor_is_rounded_as_finely_as_the_other_is_large() -> None:
@@ -71,12 +131,12 @@ def test_a_factor_is_rounded_as_finely_as_the_other_is_large() -> None:
 
 
 def test_weights_are_rounded_by_how_many_texels_their_coefficients_move() -> None:
-    """Of like bases, the steps for LL are twice as large as those for D3, which are twice as large as those for D2."""
+    """Of like bases, the steps for LL and D3 are twice as large as those for D2, which has four times the samples."""
     branch = synthetic_avatar().appearance
     like = tuple(
         replace(band, h=np.full_like(band.h, 3**-0.25), w=np.full_like(band.w, 3**-0.25)) for band in branch.details
     )
-    alike = replace(branch, ll_basis=np.full_like(branch.ll_basis, 1.1), details=like)
+    alike = replace(branch, ll_basis=np.ones_like(branch.ll_basis), details=like)
     weights = rounded(replace(synthetic_avatar(), appearance=alike)).appearance.mlp[-1].weight
     rows = np.cumsum([0, *(12 * rank for rank in branch.ranks)])
     powers = 2.0 ** -np.arange(30)
@@ -84,7 +144,7 @@ def test_weights_are_rounded_by_how_many_texels_their_coefficients_move() -> Non
         next(power for power in powers if (part % power == 0).all())
         for part in (weights[first:end] for first, end in pairwise(rows))
     ]
-    assert steps == [4 * steps[2], 2 * steps[2], steps[2]]
+    assert steps == [2 * steps[2], 2 * steps[2], steps[2]]
 
 
 @pytest.mark.skipif(not DEMO.exists(), reason="needs build/demo/avatar.muaavatar: run `make demo`")

@@ -181,8 +181,9 @@ async function stages(content, step) {
     try {
       const { clips, surface, texels, geometry } = await readStage(arriving.buffer, end);
       const sum = ({ data }) => data.reduce((all, byte) => all + byte, 0);
-      const [low, details, fixed] = [geometry.llBasis, geometry.details[0].h, geometry.staticOffset].map(sum);
-      found.push({ end, got, clips: clips.length, surface, texels: texels.texels.length, low, details, fixed });
+      const { llMean, llBasis, staticOffset } = geometry;
+      const [mean, low, details, fixed] = [llMean, llBasis, geometry.details[0].h, staticOffset].map(sum);
+      found.push({ end, got, clips: clips.length, surface, texels: texels.texels.length, mean, low, details, fixed });
     } catch (error) {
       if (error.name !== "AvatarError") throw error;
       found.push({ end, got, code: error.code, field: error.field });

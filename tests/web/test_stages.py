@@ -67,11 +67,11 @@ def test_each_stage_shows_more_as_soon_as_it_is_there(tmp_path: Path, packed: by
     assert all(one["got"] - one["end"] < STEP for one in found)
     texels = len(with_surface(synthetic_avatar()).rig.texels.texels)
     assert [one["texels"] for one in found] == [0, texels, texels, texels]
-    assert [[one[part] > 0 for part in ("low", "details", "fixed")] for one in found] == [
-        [False, False, False],
-        [True, False, False],
-        [True, True, False],
-        [True, True, True],
+    assert [[one[part] > 0 for part in ("mean", "low", "details", "fixed")] for one in found] == [
+        [False, False, False, False],
+        [True, False, False, False],
+        [True, True, True, False],
+        [True, True, True, True],
     ]
     assert all((one["clips"], one["surface"]) == (1, None) for one in found)
 

@@ -39,16 +39,20 @@ def _is_part(name: str) -> Callable[[str], bool]:
     return lambda path: path.startswith(BRANCHES) and f".{name}" in path
 
 
+def _moves(path: str) -> bool:
+    return path.startswith(BRANCHES) and not path.endswith("ll_mean")
+
+
 def _is_low(path: str) -> bool:
     return path.startswith(("texels", *BRANCHES))
 
 
 # Of a tensor's path, the last stage first: what no earlier one takes is of the mesh, the first.
-STAGES: tuple[Callable[[str], bool], ...] = (_is_late, _is_part("static_offset"), _is_part("details"), _is_low)
+STAGES: tuple[Callable[[str], bool], ...] = (_is_late, _is_part("static_offset"), _moves, _is_low)
 
 
 def _stages(tree: Tree) -> Sequence[Sequence[Array]]:
-    """The data of a posed mesh, of LL, of the details coarse first, of the static offset, and of all else."""
+    """The data of a posed mesh, of mean splats, of what moves with details last, of the static offset, of all else."""
     stages: list[list[Array]] = [[] for _ in range(len(STAGES) + 1)]
     found = sorted(tensors(tree), key=lambda place: _level(place[0]))
     for path, tensor in found:
@@ -64,5 +68,5 @@ def _stages(tree: Tree) -> Sequence[Sequence[Array]]:
 
 
 def _level(path: str) -> int:
-    """Of a detail, that those of both branches stand together; 0 of all else."""
-    return int(path.split("details[")[1].split("]")[0]) if "details[" in path else 0
+    """Of a detail, that those of both branches stand together, from 1; 0 of all else."""
+    return 1 + int(path.split("details[")[1].split("]")[0]) if "details[" in path else 0

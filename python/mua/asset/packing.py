@@ -1,6 +1,7 @@
 """Tensors packed for the network, their bytes in planes and deflated; and unpacked, never beyond what a file may claim.
 
-In planes, the bytes of equal weight stand together: all first bytes of the elements, then all second ones.
+In planes, the bytes of equal weight stand together: all first bytes of the elements, then all second ones. Halves whose
+rows are small multiples of a power of two, as `mua.asset.rounding` makes them, are the same numbers as i8.
 """
 
 import math
@@ -9,6 +10,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from mua.arrays import Array
 from mua.asset.flatbuffer import FormatError, Tree
 from mua.asset.layout import ROOT, TABLES
 from mua.asset.tensors import DTYPES, sides
@@ -16,16 +18,53 @@ from mua.limits import UNPACKED_ROOM, UNPACKED_TIMES
 
 RAW = -15  # zlib's word for a deflate stream of the largest window without a header
 GAIN = 0.95  # of its bytes, above which a tensor is not worth unpacking
+STRATEGIES = (zlib.Z_DEFAULT_STRATEGY, zlib.Z_FILTERED, zlib.Z_HUFFMAN_ONLY)  # none is the best of all
+HALF_BITS = 11  # of a half's fraction, with the one that is not stored
+MOST_STEPS = 127
+LEAST_ROW = 64  # bytes of a row, beside which the four of its scale count little
+MEMORY = 9  # the most that zlib may take, for the longest blocks
 
 
 def packed(tensor: Tree) -> Tree:
-    """The tensor as a file for the network holds it, unchanged where that saves nothing."""
-    planes = tensor["data"].reshape(-1, DTYPES[tensor["type"]].itemsize).T.tobytes()
-    deflate = zlib.compressobj(9, zlib.DEFLATED, RAW)
-    stream = deflate.compress(planes) + deflate.flush()
-    if len(stream) > GAIN * len(planes):
+    """The tensor as a file for the network holds it, the same numbers; unchanged where that saves nothing."""
+    tensor = _in_bytes(tensor)
+    planes = tensor["data"].reshape(-1, DTYPES[tensor["type"]].itemsize).T
+    last = len(planes) - 1
+    stream = b"".join(_smallest(plane.tobytes(), ends=number == last) for number, plane in enumerate(planes))
+    if len(stream) > GAIN * planes.size:
         return tensor
     return {**tensor, "data": np.frombuffer(stream, np.uint8), "packing": "Deflate"}
+
+
+def _smallest(plane: bytes, *, ends: bool) -> bytes:
+    """A part of a stream, the last one or not, by the strategy that makes it smallest."""
+    parts = []
+    for strategy in STRATEGIES:
+        deflate = zlib.compressobj(9, zlib.DEFLATED, RAW, MEMORY, strategy)
+        parts.append(deflate.compress(plane) + deflate.flush(zlib.Z_FINISH if ends else zlib.Z_SYNC_FLUSH))
+    return min(parts, key=len)
+
+
+def _in_bytes(tensor: Tree) -> Tree:
+    """The same numbers as i8, by the fewest rows, where halves are small multiples of a row's power of two."""
+    if tensor["type"] != "F16" or not tensor["data"].size:
+        return tensor
+    values = tensor["data"].view(DTYPES["F16"]).astype(np.float32)
+    units = _lowest_bits(values)
+    for rows in sorted({math.prod(tensor["shape"][:axis].tolist()) for axis in range(len(tensor["shape"]))}):
+        scale = units.reshape(rows, -1).min(axis=1)
+        whole = values.reshape(rows, -1) / scale[:, None]
+        if rows * LEAST_ROW <= values.size and np.abs(whole).max() <= MOST_STEPS:
+            data = whole.astype(np.int8).reshape(-1).view(np.uint8)
+            return {**tensor, "type": "I8", "data": data, "scale": scale}
+    return tensor
+
+
+def _lowest_bits(values: Array) -> Array:
+    """The largest power of two of which each half is a multiple; 1 for 0."""
+    fraction, exponent = np.frexp(values)
+    whole = (fraction * 2.0**HALF_BITS).astype(np.int32)
+    return np.where(values == 0, np.float32(1), np.ldexp((whole & -whole).astype(np.float32), exponent - HALF_BITS))
 
 
 def unpack(tree: Tree, size: int) -> None:

@@ -15,6 +15,8 @@ from mua.errors import InputError
 from mua.files.inputs import require_file
 from mua.files.write import require_writable
 
+LEAST, MOST = 1 / 16, 16.0  # rounding
+
 
 def pack(
     file: Annotated[Path, typer.Argument(help="Avatar file (.muaavatar).")],
@@ -23,15 +25,21 @@ def pack(
         typer.Option("--output", "-o", help="File to write.", show_default="FILE's name with the storage behind it"),
     ] = None,
     storage: Annotated[Storage, typer.Option(help="How numbers are stored; packed is the smallest.")] = "packed",
+    rounding: Annotated[
+        float,
+        typer.Option(min=LEAST, max=MOST, help="How coarsely packed rounds numbers: 2 is smaller, 0.5 nearer to FILE."),
+    ] = 1.0,
 ) -> None:
-    """Compress the avatar in FILE for download: a third of the bytes, less than 0.1 dB from the original."""
+    """Compress the avatar in FILE for download: a fifth of the bytes, no visible loss."""
+    if rounding != 1 and storage != "packed":
+        raise InputError(f"--rounding {rounding:g}: only applies to --storage packed, not to {storage}")
     require_file(file)
     target = output or file.with_name(f"{file.stem}_{storage}{file.suffix}")
     require_writable(target)
     tree = load(file)
     if storage_of(tree) == storage:
         raise InputError(f"{file}: its storage is {storage} already")
-    write(target, decode_tree(tree), storage=storage)
+    write(target, decode_tree(tree), storage=storage, rounding=rounding)
     before, after = file.stat().st_size, target.stat().st_size
     say(printer(), f"{target}: {after / 1e6:.2f} MB, {file.name}: {before / 1e6:.2f} MB")
 
