@@ -9,11 +9,12 @@ in the last frame and the middle one of every motion. An avatar that was baked f
 with the light and the moving cloth that it learnt, so that only its share of dark pixels can be compared.
 
 PSNR is over all pixels that either of them covers, on grey, and over those within BORDER of an open border of the
-surface. FLIP is the mean over the covered pixels, of which PER_DEGREE lie along a degree of the eye. "Dark" is the share of pixels within FRINGE
-outside the source's silhouette that are darker than both the nearest pixel of the source and the background: a fringe.
-The bound, after "of", is the PSNR of the surface itself under its atlas averaged to so many texels: splats without gaps
-that end where the surface does would come near to it. With --before the splats that still_splats.py kept of another
-commit are drawn next to the source, and their figures come first.
+surface. FLIP is the mean over the covered pixels, of which PER_DEGREE lie along a degree of the eye. "Dark" is the
+share of pixels within FRINGE outside the source's silhouette that are darker than both the nearest pixel of the source
+and the background: a fringe. The bound, after "of", is the PSNR of the surface itself under its atlas averaged to so
+many texels. The splats are fitted to the source first, in poses of the built-in range of motion, as a bake fits them.
+With --before the splats that still_splats.py kept of another commit are drawn next to the source, and their figures
+come first.
 """
 
 import argparse
@@ -36,12 +37,14 @@ from mua.avatar.camera import Camera, orbit
 from mua.avatar.decode import Splats, decode_clip_frame, pose_splats
 from mua.baking.one_sided import open_edges
 from mua.baking.sources import load_character
+from mua.fidelity import fitting
 from mua.fidelity.background import over
 from mua.fidelity.canvas import opened
 from mua.fidelity.measure import MOST_DECIBELS
 from mua.fidelity.painter import Painter
 from mua.fidelity.posing import Moment, Poser, skinned
 from mua.fidelity.splats import SplatPainter
+from mua.motion.range import motion_range
 from mua.pose.clip import Clip
 from mua.pose.encoding import RATE
 from mua.rig.body_parts import BODY_PARTS, body_parts
@@ -167,13 +170,23 @@ def kept_splats(file: Path) -> Splats:
 
 
 def close_ups(
-    path: Path, *, texels: int, size: int, before: Path | None, avatar: Avatar | None, motion: Sequence[Path]
+    path: Path,
+    *,
+    texels: int,
+    size: int,
+    steps: int,
+    before: Path | None,
+    avatar: Avatar | None,
+    motion: Sequence[Path],
 ) -> Iterator[tuple[str, Array, dict[str, Figures]]]:
     """Each part from each side in each pose: its name, images [size, n size, 3], the figures of all but the source."""
     character = load_character(path, uv="auto", seed=0, detail=read_detail((), uv="auto"))
     if character.source is None:
         raise SystemExit(f"{path}: this format keeps nothing to compare with")
-    teacher, surface = StillTeacher(character, texels=texels), SkinnedSurface(character)
+    clips = motion_range(character, (), frames=fitting.POSES, seed=0, short=True)
+    corrections = fitting.fit(character, clips, texels=texels, source=character.source, steps=steps) if steps else None
+    teacher = StillTeacher(character, texels=texels, corrections=corrections)
+    surface = SkinnedSurface(character)
     edges = open_edges(character.mesh.vertices, character.mesh.faces)
     scene, (part, material) = character.source.scene, as_textured(character, texels)
     with opened() as context:
@@ -212,6 +225,7 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("characters", type=Path, nargs="+")
     parser.add_argument("--texels", type=int, default=256)
     parser.add_argument("--size", type=int, default=1080, help="pixels along a side of an image")
+    parser.add_argument("--steps", type=int, default=fitting.STEPS, help="of the fit to the source; 0: none")
     parser.add_argument("--before", type=Path, help="a folder of still_splats.py, to be drawn and measured beside it")
     parser.add_argument("--avatar", type=Path, help="what was baked from the one character, to be drawn beside it")
     parser.add_argument("--motion", type=Path, nargs="+", default=[], help="motion files to pose the characters by")
@@ -227,6 +241,7 @@ def main(arguments: list[str] | None = None) -> None:
             path,
             texels=options.texels,
             size=options.size,
+            steps=options.steps,
             before=options.before,
             avatar=avatar,
             motion=options.motion,

@@ -34,6 +34,8 @@ from mua.rig.texel_binding import bind_texels
 from mua.teachers.simulated.teacher import SimulatedTeacher
 from mua.training.memory import release_memory
 
+FITTED = b"fitted"  # part of the key of a fit and of the recording that it corrects, which have one name
+
 
 def bake(settings: BakeSettings, listener: Listener) -> Baked:
     """Carry out `settings`: record a teacher, distil it, write the avatar, measure it and image it.
@@ -97,7 +99,7 @@ def _fitted(
     """Corrections of the splats by images of the source, kept in the work directory; None without source or OpenGL."""
     if character.source is None:
         return None
-    file = settings.work / f"fit-{recording_key(parts(settings, character), planned)}.npy"
+    file = settings.work / f"fit-{recording_key([*parts(settings, character), FITTED], planned)}.npy"
     if file.exists():
         return np.asarray(np.load(file))
     listener.stage("fitting to the source")
@@ -145,8 +147,9 @@ def _record(
         listener.note(sentence)
     bare = replace(character, clips=())
     teacher = partial(SimulatedTeacher, bare, texels=texels, corrections=corrections, seed=seed)
-    by = b"as laid" if corrections is None else corrections.tobytes()
-    return recorded(teacher, recording_key([*parts(settings, character), by], planned), settings, planned, listener)
+    fitted = [] if corrections is None else [FITTED]
+    key = recording_key([*parts(settings, character), *fitted], planned)
+    return recorded(teacher, key, settings, planned, listener)
 
 
 def parts(settings: BakeSettings, character: Character) -> Iterator[bytes]:
