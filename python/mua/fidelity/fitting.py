@@ -27,13 +27,14 @@ from mua.splatting.projection import Eye
 from mua.splatting.rasterise import rasterise
 from mua.teachers.simulated.still import StillTeacher
 
-STEPS = 120  # each of one image
+STEPS = 200  # each of one image
 POSES = 6  # beside that of the file
 SIDE = 1.25  # pixels along an image for a texel along the texture: what is in it changes with both alike
 NEARNESS = 2.5  # pixels for a texel in the middle of an image
 ELEVATIONS = -0.35, 0.5  # radians
 RATES = {"offset": 0.05, "size": 0.03, "colour": 0.02}  # offsets over a texel's width
-BETAS, EPSILON = (0.9, 0.99), 1.0
+BETAS, EPSILON = (0.9, 0.99), 0.1
+PRIOR = 2.0  # pixels for which each colour stands as it is: what few images show keeps its own
 LAST_RATE = 0.01  # of a rate, in the last step
 SMALLEST, LARGEST = -1.5, 0.7  # change of a log scale
 
@@ -99,7 +100,7 @@ def _descend(
         splats = pose_splats(rig, shown.joints, shown.mesh, _corrected(shown.texture, _by(changes, widths)))
         image = rasterise(splats, Eye.of(camera, shown.texture), shown.bounds, background)
         optimiser.zero_grad()
-        (image - target).square().sum().backward()
+        ((image - target).square().sum() + PRIOR * changes["colour"].square().sum()).backward()
         optimiser.step()
         schedule.step()
         progress(step + 1)
