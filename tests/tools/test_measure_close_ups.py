@@ -43,7 +43,7 @@ def test_writes_each_part_from_each_side(
     shared_data: SharedData, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     character = shared_data.path("characters/lumberjack.glb")
-    main([str(character), "--texels", "64", "--size", "96", "-o", str(tmp_path)])
+    main([str(character), "--texels", "64", "--size", "96", "--steps", "2", "-o", str(tmp_path)])
     names = sorted(file.stem for file in tmp_path.glob("*.png"))
     figure = "lumberjack as the file stands"
     parts = ("head", "hand", "hem") if f"{figure} hem front" in names else ("head", "hand")
