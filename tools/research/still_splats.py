@@ -40,13 +40,13 @@ def _module(names: tuple[str, ...]) -> Any:
     return import_module(next(name for name in names if find_spec(name)))
 
 
-def main() -> None:
+def main(arguments: list[str] | None = None) -> None:
     """Write FOLDER/CHARACTER.npz for each character."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("characters", type=Path, nargs="+")
     parser.add_argument("--texels", type=int, default=256)
     parser.add_argument("-o", "--output", type=Path, required=True)
-    options = parser.parse_args()
+    options = parser.parse_args(arguments)
     options.output.mkdir(parents=True, exist_ok=True)
     for path in options.characters:
         np.savez(options.output / f"{path.stem}.npz", **still_splats(path, texels=options.texels))
