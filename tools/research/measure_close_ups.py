@@ -206,16 +206,14 @@ def close_ups(
                     camera = orbit(box, screen=(size, size), azimuth=moment.yaw + float(np.radians(degrees)))
                     middle = camera.view @ np.append(box.mean(axis=0), 1)
                     scale = float(camera.projection[1, 1] * size / 2 / -middle[2])
-                    source, splats = (
-                        paint(drawn, camera),
-                        {name: splat(frame, camera) for name, frame in frames.items()},
-                    )
+                    source = paint(drawn, camera)
+                    splats = {name: splat(frame, camera) for name, frame in frames.items()}
                     border = near(places[edges].mean(axis=1), camera, pixels=BORDER * scale)
-                    shown = {"bound": textured([places], camera), **splats}
+                    images = {"bound": textured([places], camera), **splats}
                     yield (
                         f"{moment.name}, {part_name}, {side}",
                         np.hstack([over(image, GREY) for image in (source, *splats.values())]),
-                        {name: measured(source, image, border, scale=scale) for name, image in shown.items()},
+                        {name: measured(source, image, border, scale=scale) for name, image in images.items()},
                     )
 
 

@@ -49,7 +49,8 @@ def main(arguments: list[str] | None = None) -> None:
     options = parser.parse_args(arguments)
     options.output.mkdir(parents=True, exist_ok=True)
     for path in options.characters:
-        np.savez(options.output / f"{path.stem}.npz", **still_splats(path, texels=options.texels))
+        kept: dict[str, Any] = still_splats(path, texels=options.texels)
+        np.savez(options.output / f"{path.stem}.npz", **kept)
 
 
 if __name__ == "__main__":

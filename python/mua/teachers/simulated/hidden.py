@@ -75,7 +75,7 @@ def showing_instead(
     solid: Array,  # [N] bool: texels that nothing shows through
 ) -> Array:
     """The texel [N] whose colour each one shows: its own, or that of the nearest solid one that can be seen."""
-    covers = _Covers(character, cut=np.isin(character.mesh.faces, corners[~solid]).all(axis=1))
+    covers = _Covers(character, cut=np.asarray(np.isin(character.mesh.faces, corners[~solid]).all(axis=1)))
     lift = LIFT * float(np.ptp(character.mesh.vertices, axis=0).max())
     hidden = np.arange(len(corners))
     rng = np.random.default_rng(0)
