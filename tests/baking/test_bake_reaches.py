@@ -22,6 +22,7 @@ from mua.baking.distillation import Distillation
 from mua.baking.settings import BakeSettings
 from mua.cli.check import LOOKS_WRONG
 from mua.export.bvh import bvh_text
+from mua.fidelity import fitting
 from mua.pose.clip import Clip
 from mua.recording import PlannedClip
 from mua.rig.character import Character
@@ -102,12 +103,12 @@ def run(
         late = ran[arguments] = Late()
 
         def compared(
-            character: Character, clips: list[Clip], *, texels: int, faces: bool = False
+            character: Character, clips: list[Clip], *, texels: int, corrections: object = None, faces: bool = False
         ) -> tuple[None, tuple[str, ...]]:
             late.character, late.clips, late.compared = character, tuple(clips), texels
             return None, ()
 
-        def teacher(character: Character, *, texels: int, seed: int = -1) -> None:
+        def teacher(character: Character, *, texels: int, corrections: object = None, seed: int = -1) -> None:
             late.character, late.texels, late.seed = character, texels, seed
 
         def recorded(
@@ -122,6 +123,7 @@ def run(
 
         for module in (pipeline, check):
             monkeypatch.setattr(module, "fidelity_of", compared)
+        monkeypatch.setattr(fitting, "fit", lambda *_, **__: np.zeros((1, 9)))
         monkeypatch.setattr(pipeline, "SimulatedTeacher", teacher)
         monkeypatch.setattr(pipeline, "recorded", recorded)
         monkeypatch.setattr(pipeline, "distil_student", distil_student)

@@ -2,22 +2,27 @@
 
 python tools/research/measure_close_ups.py hero.glb witch.vrm --texels 256 -o close_ups/
 python tools/research/measure_close_ups.py hero.glb --avatar hero.muaavatar --motion kicks/ -o close_ups/
+python tools/research/measure_close_ups.py hero.glb --before before/ -o close_ups/
 
 Both are drawn without light, from the front and from behind, so that the part fills the image: as the file stands, or
 in the last frame and the middle one of every motion. An avatar that was baked from the character is drawn beside them,
 with the light and the moving cloth that it learnt, so that only its share of dark pixels can be compared.
 
 PSNR is over all pixels that either of them covers, on grey, and over those within BORDER of an open border of the
-surface. "Dark" is the share of pixels within FRINGE outside the source's silhouette that are darker than both the
-nearest pixel of the source and the background: a fringe. The bound, after "of", is the PSNR of the surface itself under
-its atlas averaged to so many texels: splats without gaps that end where the surface does would come near to it.
+surface. FLIP is the mean over the covered pixels, of which PER_DEGREE lie along a degree of the eye. "Dark" is the
+share of pixels within FRINGE outside the source's silhouette that are darker than both the nearest pixel of the source
+and the background: a fringe. The bound, after "of", is the PSNR of the surface itself under its atlas averaged to so
+many texels. The splats are fitted to the source first, in poses of the built-in range of motion, as a bake fits them.
+With --before the splats that still_splats.py kept of another commit are drawn next to the source, and their figures
+come first.
 """
 
 import argparse
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass, fields
 from pathlib import Path
 
+import flip_evaluator
 import numpy as np
 from PIL import Image
 from scipy.ndimage import distance_transform_edt
@@ -29,15 +34,17 @@ from mua.asset.read import read
 from mua.atlas.detail import read_detail
 from mua.atlas.filtering import reduced
 from mua.avatar.camera import Camera, orbit
-from mua.avatar.decode import decode_clip_frame, pose_splats
+from mua.avatar.decode import Splats, decode_clip_frame, pose_splats
 from mua.baking.one_sided import open_edges
 from mua.baking.sources import load_character
+from mua.fidelity import fitting
 from mua.fidelity.background import over
 from mua.fidelity.canvas import opened
 from mua.fidelity.measure import MOST_DECIBELS
 from mua.fidelity.painter import Painter
 from mua.fidelity.posing import Moment, Poser, skinned
 from mua.fidelity.splats import SplatPainter
+from mua.motion.range import motion_range
 from mua.pose.clip import Clip
 from mua.pose.encoding import RATE
 from mua.rig.body_parts import BODY_PARTS, body_parts
@@ -48,6 +55,7 @@ from mua.teachers.simulated.surface import SkinnedSurface
 
 GREY = 0.5
 BORDER, FRINGE = 0.02, 0.01  # metres about an open border, and outside the silhouette
+PER_DEGREE = 25  # pixels of a degree of the eye, about those of a headset, for FLIP
 COVERED = 0.02  # opacity
 DARKER = 0.04  # of the sRGB range
 SIDES = {"front": 0.0, "behind": 150.0}  # degrees round the figure
@@ -60,6 +68,7 @@ class Figures:
 
     psnr: float  # dB, of what either covers
     border: float  # dB, within BORDER of an open border; NaN where there is none
+    flip: float  # 0 where none is seen to 1, of what either covers
     dark: float  # share of the pixels within FRINGE outside the silhouette
 
 
@@ -81,6 +90,7 @@ def measured(
     return Figures(
         psnr=decibels(one, other, covered),
         border=decibels(one, other, covered & near_border),
+        flip=perceived(one, other, covered),
         dark=float(dark.sum() / max(ring.sum(), 1)),
     )
 
@@ -90,6 +100,14 @@ def decibels(one: Array, other: Array, where: Array) -> float:
     if not where.any():
         return float("nan")
     return float(min(-10 * np.log10(max(np.mean((one - other)[where] ** 2), np.finfo(float).tiny)), MOST_DECIBELS))
+
+
+def perceived(one: Array, other: Array, where: Array) -> float:
+    """The mean FLIP over these pixels."""
+    images = (np.ascontiguousarray(image, np.float32) for image in (one, other))
+    seen = {"ppd": PER_DEGREE}
+    differs = flip_evaluator.evaluate(*images, "LDR", applyMagma=False, computeMeanError=False, parameters=seen)
+    return float(differs[0][..., 0][where].mean(dtype=np.float64))
 
 
 def parts_of(character: Character, places: Array) -> Iterator[tuple[str, Array]]:
@@ -145,14 +163,30 @@ def as_textured(character: Character, texels: int) -> tuple[Part, Material]:
     return part, Material("atlas", reduced(character.base_color, len(character.base_color) // texels))
 
 
+def kept_splats(file: Path) -> Splats:
+    """What still_splats.py wrote."""
+    with np.load(file) as kept:
+        return Splats(**{field.name: kept[field.name] for field in fields(Splats) if field.name in kept})
+
+
 def close_ups(
-    path: Path, *, texels: int, size: int, avatar: Avatar | None, motion: Sequence[Path]
-) -> Iterator[tuple[str, Array, list[Figures]]]:
-    """Each part from each side in each pose: its name, images [size, n size, 3], the figures of bound and splats."""
+    path: Path,
+    *,
+    texels: int,
+    size: int,
+    steps: int,
+    before: Path | None,
+    avatar: Avatar | None,
+    motion: Sequence[Path],
+) -> Iterator[tuple[str, Array, dict[str, Figures]]]:
+    """Each part from each side in each pose: its name, images [size, n size, 3], the figures of all but the source."""
     character = load_character(path, uv="auto", seed=0, detail=read_detail((), uv="auto"))
     if character.source is None:
         raise SystemExit(f"{path}: this format keeps nothing to compare with")
-    teacher, surface = StillTeacher(character, texels=texels), SkinnedSurface(character)
+    clips = motion_range(character, (), frames=fitting.POSES, seed=0, short=True)
+    corrections = fitting.fit(character, clips, texels=texels, source=character.source, steps=steps) if steps else None
+    teacher = StillTeacher(character, texels=texels, corrections=corrections)
+    surface = SkinnedSurface(character)
     edges = open_edges(character.mesh.vertices, character.mesh.faces)
     scene, (part, material) = character.source.scene, as_textured(character, texels)
     with opened() as context:
@@ -160,25 +194,26 @@ def close_ups(
         textured, splat = Painter(context, [part], [material], screen=(size, size)), SplatPainter(context, (size, size))
         for moment, clip, at in moments(character, motion):
             shown = teacher.frame(moment.pose, moment.stretches)
-            frames = [pose_splats(teacher.rig, shown.mesh, texture=shown.texture, pose=moment.pose)]
-            frames += [] if avatar is None else [decode_clip_frame(avatar, clip, frame=at)]
+            frames = {} if before is None else {"before": kept_splats(before / f"{path.stem}.npz")}
+            frames["now"] = pose_splats(teacher.rig, shown.mesh, texture=shown.texture, pose=moment.pose)
+            if avatar is not None:
+                frames["avatar"] = decode_clip_frame(avatar, clip, frame=at)
             joints = character.skeleton.skinning(moment.pose.rotations, moment.pose.translations)
             places = surface.posed(joints, moment.stretches).places
             drawn = [skinned(scene, part, moment.nodes) for part in scene.parts]
-            for name, box in parts_of(character, places):
+            for part_name, box in parts_of(character, places):
                 for side, degrees in SIDES.items():
                     camera = orbit(box, screen=(size, size), azimuth=moment.yaw + float(np.radians(degrees)))
                     middle = camera.view @ np.append(box.mean(axis=0), 1)
                     scale = float(camera.projection[1, 1] * size / 2 / -middle[2])
-                    source, splats = paint(drawn, camera), [splat(frame, camera) for frame in frames]
+                    source = paint(drawn, camera)
+                    splats = {name: splat(frame, camera) for name, frame in frames.items()}
                     border = near(places[edges].mean(axis=1), camera, pixels=BORDER * scale)
-                    figures = [
-                        measured(source, one, border, scale=scale) for one in (textured([places], camera), *splats)
-                    ]
+                    images = {"bound": textured([places], camera), **splats}
                     yield (
-                        f"{moment.name}, {name}, {side}",
-                        np.hstack([over(i, GREY) for i in (source, *splats)]),
-                        figures,
+                        f"{moment.name}, {part_name}, {side}",
+                        np.hstack([over(image, GREY) for image in (source, *splats.values())]),
+                        {name: measured(source, image, border, scale=scale) for name, image in images.items()},
                     )
 
 
@@ -188,29 +223,46 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("characters", type=Path, nargs="+")
     parser.add_argument("--texels", type=int, default=256)
     parser.add_argument("--size", type=int, default=1080, help="pixels along a side of an image")
+    parser.add_argument("--steps", type=int, default=fitting.STEPS, help="of the fit to the source; 0: none")
+    parser.add_argument("--before", type=Path, help="a folder of still_splats.py, to be drawn and measured beside it")
     parser.add_argument("--avatar", type=Path, help="what was baked from the one character, to be drawn beside it")
     parser.add_argument("--motion", type=Path, nargs="+", default=[], help="motion files to pose the characters by")
     parser.add_argument("-o", "--output", type=Path, required=True)
     options = parser.parse_args(arguments)
     options.output.mkdir(parents=True, exist_ok=True)
+    if options.before and options.motion:
+        parser.error("--before keeps splats of the file as it stands: leave out --motion")
     avatar = options.avatar and read(options.avatar)
     for path in options.characters:
-        found = []
-        drawn = close_ups(path, texels=options.texels, size=options.size, avatar=avatar, motion=options.motion)
+        found: dict[str, list[tuple[float, ...]]] = {}
+        drawn = close_ups(
+            path,
+            texels=options.texels,
+            size=options.size,
+            steps=options.steps,
+            before=options.before,
+            avatar=avatar,
+            motion=options.motion,
+        )
         for name, image, figures in drawn:
             file = options.output / f"{path.stem} {name.replace(', ', ' ')}.png"
             Image.fromarray((255 * image).round().astype(np.uint8)).save(file)
             print(_line(f"{path.stem}, {name}", figures), flush=True)
-            found.append([(one.psnr, one.border, one.dark) for one in figures])
-        means = [Figures(*mean) for mean in np.nanmean(found, axis=0)]
+            for which, one in figures.items():
+                found.setdefault(which, []).append(astuple(one))
+        means = {which: Figures(*np.nanmean(rows, axis=0)) for which, rows in found.items()}
         print(_line(f"{path.stem}, mean", means), flush=True)
 
 
-def _line(name: str, figures: Sequence[Figures]) -> str:
-    bound, splats, *avatar = figures
-    psnr = f"{splats.psnr:.2f} dB of {bound.psnr:.2f} dB"
-    own = f"{name}: {psnr}, at borders {splats.border:.2f} dB, {splats.dark:.1%} dark outside"
-    return own + "".join(f"; avatar {one.dark:.1%}" for one in avatar)
+def _line(name: str, figures: dict[str, Figures]) -> str:
+    shown = [figures[which] for which in ("before", "now") if which in figures]
+
+    def each(field: str, form: str) -> str:
+        return " -> ".join(format(getattr(one, field), form) for one in shown)
+
+    own = f"{name}: {each('psnr', '.2f')} dB of {figures['bound'].psnr:.2f} dB, at borders {each('border', '.2f')} dB"
+    own += f", FLIP {each('flip', '.4f')}, {each('dark', '.1%')} dark outside"
+    return own + (f"; avatar {figures['avatar'].dark:.1%}" if "avatar" in figures else "")
 
 
 if __name__ == "__main__":

@@ -274,7 +274,8 @@ def main() -> None:
     parser.add_argument("--show", action="append", default=[], help="MOTION=FRAME, to be in the image instead")
     given = parser.parse_args()
     avatar = read(given.file)
-    teacher = Teacher(given.character, given.cache, texels=avatar.rig.texels.size)
+    fit = given.recording.with_name(f"{given.recording.name.replace('recording', 'fit')}.npy")
+    teacher = Teacher(given.character, given.cache, texels=avatar.rig.texels.size, fit=fit)
     measurement = Measurement(avatar, teacher, Recording(given.recording))
     paths = [path for motion in given.motion for path in (sorted(motion.iterdir()) if motion.is_dir() else [motion])]
     motions = [*motions_of(teacher.character, paths), *broken_rigs(avatar)]

@@ -104,12 +104,14 @@ class Teacher:
     They are found again by the character's file and the motion: empty the directory after changing the simulation.
     """
 
-    def __init__(self, path: Path | None, cache: Path, *, texels: int, seed: int = 0) -> None:
-        """Load the character at `path`, or the procedural one, as a bake does."""
+    def __init__(self, path: Path | None, cache: Path, *, texels: int, seed: int = 0, fit: Path | None = None) -> None:
+        """Load the character at `path`, or the procedural one, as a bake does, and the corrections that it kept."""
         detail = None if path is None else read_detail((), uv="auto")
         self.character = load_character(path, uv="auto", seed=seed, detail=detail)
         content = b"procedural" if path is None else path.read_bytes()
-        self._key = hashlib.sha256(f"{texels} {seed}".encode() + content)
+        self._corrections = None if fit is None or not fit.exists() else np.load(fit)
+        fitted = b"" if self._corrections is None else self._corrections.tobytes()
+        self._key = hashlib.sha256(f"{texels} {seed}".encode() + content + fitted)
         self._cache, self._texels, self._seed = cache, texels, seed
         self._simulated: SimulatedTeacher | None = None
 
@@ -133,7 +135,9 @@ class Teacher:
     def _keep(self, path: Path, motion: Motion) -> None:
         if self._simulated is None:
             bare = replace(self.character, clips=(), source=None)
-            self._simulated = SimulatedTeacher(bare, texels=self._texels, seed=self._seed)
+            self._simulated = SimulatedTeacher(
+                bare, texels=self._texels, corrections=self._corrections, seed=self._seed
+            )
         shown = self._simulated.frames(motion.clip, frozenset(motion.frames.tolist()))
         whole = [frame for frame in shown if isinstance(frame, TeacherFrame)]
         path.parent.mkdir(parents=True, exist_ok=True)

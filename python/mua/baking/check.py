@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from PIL import Image
 
+from mua.arrays import Array
 from mua.baking.listener import Listener
 from mua.baking.settings import BakeSettings
 from mua.baking.sources import expressions_of, faced, load_baked_character
@@ -88,6 +89,7 @@ def fidelity_of(
     clips: Sequence[Clip],
     *,
     texels: int,
+    corrections: Array | None = None,
     faces: bool = False,
 ) -> tuple[Fidelity | None, tuple[str, ...]]:
     """How much the splats look like the character, and a sentence for what is poor; None where nothing is measured.
@@ -97,7 +99,9 @@ def fidelity_of(
     if character.source is None:
         return None, (WITHOUT_FILE,)
     try:
-        fidelity = compare(character, clips, texels=texels, source=character.source, faces=faces)
+        fidelity = compare(
+            character, clips, texels=texels, source=character.source, corrections=corrections, faces=faces
+        )
     except InputError as error:
         return None, (f"The splats were not compared with the source: {error}.",)
     return fidelity, report.sentences(fidelity)

@@ -4,8 +4,10 @@ from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
 
+import numpy as np
 import torch
 
+from mua.arrays import Array
 from mua.atlas.texel_density import describe_texels
 from mua.baking.check import fidelity_of
 from mua.baking.distillation import Baked, Distillation, choose_device, distil_student, finish
@@ -19,10 +21,11 @@ from mua.baking.recorded import recorded, recording_key
 from mua.baking.report import STAND_IN
 from mua.baking.settings import BakeSettings
 from mua.baking.sources import faced, load_baked_character
-from mua.fidelity import report
+from mua.errors import InputError
+from mua.fidelity import fitting, report
 from mua.fidelity.compare import Fidelity
 from mua.files.lock import DirectoryLock
-from mua.files.write import require_writable
+from mua.files.write import replacing, require_writable
 from mua.pose.clip import Clip
 from mua.recording import PlannedClip, Recording
 from mua.rig.character import Character
@@ -30,6 +33,9 @@ from mua.rig.template import make_template
 from mua.rig.texel_binding import bind_texels
 from mua.teachers.simulated.teacher import SimulatedTeacher
 from mua.training.memory import release_memory
+
+FRAMES_OF_A_STEP = 4  # training frames for each step of the fit, so that it takes a tenth of the time of a quick bake
+FITTED = b"fitted"  # part of the key of a fit and of the recording that it corrects, which have one name
 
 
 def bake(settings: BakeSettings, listener: Listener) -> Baked:
@@ -66,10 +72,11 @@ def _bake(settings: BakeSettings, device: torch.device, listener: Listener) -> B
     planned += ranges
 
     require_writable(settings.output)
-    fidelity = _fidelity(character, clips, settings.student.texels, listener)
+    corrections = _fitted(settings, character, planned, listener)
+    fidelity = _fidelity(character, clips, settings.student.texels, corrections, listener)
     character = replace(character, source=None)  # its textures may be large
     release_memory()
-    recording = _record(settings, character, planned, listener)
+    recording = _record(settings, character, corrections, planned, listener)
     release_memory()
     distillation = Distillation(
         output=settings.output,
@@ -87,24 +94,63 @@ def _bake(settings: BakeSettings, device: torch.device, listener: Listener) -> B
     return finish(distillation, student, recording, listener)
 
 
-def _fidelity(character: Character, clips: list[Clip], texels: int, listener: Listener) -> Fidelity | None:
+def _fitted(
+    settings: BakeSettings, character: Character, planned: list[PlannedClip], listener: Listener
+) -> Array | None:
+    """Corrections of the splats by images of the source, kept in the work directory; None without source or OpenGL."""
+    if character.source is None:
+        return None
+    file = settings.work / f"fit-{recording_key([*parts(settings, character), FITTED], planned)}.npy"
+    if file.exists():
+        return np.asarray(np.load(file))
+    listener.stage("fitting to the source")
+    steps = min(settings.student.frames // FRAMES_OF_A_STEP, fitting.STEPS)
+    try:
+        corrections = fitting.fit(
+            character,
+            [one.clip for one in planned if not one.held_out],
+            texels=settings.student.texels,
+            source=character.source,
+            steps=steps,
+            progress=lambda done: listener.step(done, steps),
+        )
+    except InputError as error:
+        listener.note(f"The splats were not fitted to the source: {error}.")
+        return None
+    with replacing(file) as temporary, temporary.open("wb") as out:
+        np.save(out, corrections)
+    return corrections
+
+
+def _fidelity(
+    character: Character, clips: list[Clip], texels: int, corrections: Array | None, listener: Listener
+) -> Fidelity | None:
     """Compare splats and source and note the result; None if there is no source or no OpenGL."""
     if character.source is None:
         return None
     listener.stage("comparison with source")
-    fidelity, warnings = fidelity_of(character, clips, texels=texels)
+    fidelity, warnings = fidelity_of(character, clips, texels=texels, corrections=corrections)
     for sentence in (*([] if fidelity is None else [report.summary(fidelity)]), *warnings):
         listener.note(sentence)
     return fidelity
 
 
-def _record(settings: BakeSettings, character: Character, planned: list[PlannedClip], listener: Listener) -> Recording:
+def _record(
+    settings: BakeSettings,
+    character: Character,
+    corrections: Array | None,
+    planned: list[PlannedClip],
+    listener: Listener,
+) -> Recording:
     """The stand-in teacher's recording."""
     texels, seed = settings.student.texels, settings.student.seed
     for sentence in bind_texels(character, make_template(character), size=texels).notes:
         listener.note(sentence)
-    teacher = partial(SimulatedTeacher, replace(character, clips=()), texels=texels, seed=seed)
-    return recorded(teacher, recording_key(parts(settings, character), planned), settings, planned, listener)
+    bare = replace(character, clips=())
+    teacher = partial(SimulatedTeacher, bare, texels=texels, corrections=corrections, seed=seed)
+    fitted = [] if corrections is None else [FITTED]
+    key = recording_key([*parts(settings, character), *fitted], planned)
+    return recorded(teacher, key, settings, planned, listener)
 
 
 def parts(settings: BakeSettings, character: Character) -> Iterator[bytes]:

@@ -81,7 +81,13 @@ class Fidelity:
 
 
 def compare(
-    character: Character, clips: Sequence[Clip], *, texels: int, source: Source, faces: bool = False
+    character: Character,
+    clips: Sequence[Clip],
+    *,
+    texels: int,
+    source: Source,
+    corrections: Array | None = None,
+    faces: bool = False,
 ) -> Fidelity:
     """Draw a character's source and its splats as the file stands and in frames spread over `clips`.
 
@@ -90,7 +96,7 @@ def compare(
     """
     poser = Poser(source, character.skeleton)
     moments = [poser.rest(), *(poser.of_clip(clip, frame) for clip, frame in spread(clips, POSED))]
-    teacher = StillTeacher(character, texels=texels)
+    teacher = StillTeacher(character, texels=texels, corrections=corrections)
     with opened() as context:
         studio = _Studio(context, source, poser)
         views = [ROUND, *({side: degrees} for side, degrees in itertools.islice(itertools.cycle(IN_MOTION), POSED))]

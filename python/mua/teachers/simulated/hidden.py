@@ -24,10 +24,13 @@ from mua.training.threads import in_order
 from mua.training.warp_start import start
 
 DEVICE = "cpu"
+SOLID = 0.9  # opacity from which a texel hides what is behind it
 DIRECTIONS = 48  # in which a point looks out, others in each pose
 POSES = 8  # in which joints are turned at random, beside the bind pose
 TURN = np.radians(120)  # of a joint, at most
 WELL_MOVED = 0.1  # of the farthest: vertices that an expression moves less uncover nothing
+FAR = wp.constant(1.0e6)  # metres: as far as a ray goes
+LAYERS = wp.constant(4)  # of cut-out surface that a ray passes
 LIFT = 5e-4  # metres on a person, from which a ray starts: what lies closer is the surface itself
 
 start()
@@ -35,18 +38,33 @@ start()
 
 @wp.kernel(enable_backward=False)
 def look_out(
-    mesh: wp.uint64,
+    solid: wp.uint64,
+    cut: wp.uint64,
+    uv: wp.array[wp.vec2],
+    shown: wp.array2d[wp.bool],
     points: wp.array[wp.vec3],
     directions: wp.array[wp.vec3],
     lift: float,
     seen: wp.array[wp.bool],
 ):
-    """Whether a ray from each point meets no triangle."""
+    """Whether a ray from each point meets no triangle of `solid`, and `cut` only where the texture shows nothing."""
     i = wp.tid()
     for k in range(directions.shape[0]):
         if not seen[i]:
             away = directions[k]
-            seen[i] = not wp.mesh_query_ray_anyhit(mesh, points[i] + lift * away, away, 1.0e6)
+            start = points[i] + lift * away
+            free = not wp.mesh_query_ray_anyhit(solid, start, away, FAR)
+            for _layer in range(LAYERS):
+                if free and not seen[i]:
+                    hit = wp.mesh_query_ray(cut, start, away, FAR)
+                    if hit.result:
+                        corner = 3 * hit.face
+                        at = hit.u * uv[corner] + hit.v * uv[corner + 1] + (1.0 - hit.u - hit.v) * uv[corner + 2]
+                        row = wp.clamp(int(at[1] * float(shown.shape[0])), 0, shown.shape[0] - 1)
+                        free = not shown[row, wp.clamp(int(at[0] * float(shown.shape[1])), 0, shown.shape[1] - 1)]
+                        start += (hit.t + lift) * away
+                    else:
+                        seen[i] = True
 
 
 def showing_instead(
@@ -57,8 +75,7 @@ def showing_instead(
     solid: Array,  # [N] bool: texels that nothing shows through
 ) -> Array:
     """The texel [N] whose colour each one shows: its own, or that of the nearest solid one that can be seen."""
-    clear = np.isin(character.mesh.faces, corners[~solid]).all(axis=1)
-    faces = character.mesh.faces[~clear]
+    covers = _Covers(character, cut=np.asarray(np.isin(character.mesh.faces, corners[~solid]).all(axis=1)))
     lift = LIFT * float(np.ptp(character.mesh.vertices, axis=0).max())
     hidden = np.arange(len(corners))
     rng = np.random.default_rng(0)
@@ -68,7 +85,7 @@ def showing_instead(
         points = np.einsum("nk,nkc->nc", barycentrics[hidden[asked]], places[corners[hidden[asked]]])
         away = rng.standard_normal((DIRECTIONS, 3))
         away /= np.linalg.norm(away, axis=1, keepdims=True)
-        asked[asked] = _seen(points, places, faces, away=away, lift=lift)
+        asked[asked] = covers.seen(points, places, away=away, lift=lift)
         hidden = hidden[~asked]
     shown, own = np.arange(len(corners)), np.ones(len(corners), bool)
     own[hidden] = False
@@ -108,22 +125,43 @@ def _poses(character: Character, rng: np.random.Generator) -> list[Array]:
     return [bind, *rotation.multiply(np.broadcast_to(bind, turns.shape), turns)]
 
 
-def _seen(points: Array, vertices: Array, faces: Array, *, away: Array, lift: float) -> Array:
-    """Which points [n] a triangle does not enclose from all sides."""
-    if not len(points) or not len(faces):
-        return np.ones(len(points), bool)
-    mesh = wp.Mesh(
+class _Covers:
+    """The surface that hides what is behind it, where its texture is opaque."""
+
+    def __init__(
+        self,
+        character: Character,
+        *,
+        cut: Array,  # [F] bool: faces with texels that something shows through
+    ) -> None:
+        mesh = character.mesh
+        self._faces = [mesh.faces[~cut], mesh.faces[cut]]
+        self._uv = wp.array(mesh.uv[mesh.uv_faces[cut]].reshape(-1, 2), dtype=wp.vec2, device=DEVICE)
+        self._shown = wp.array(character.base_color[..., 3] >= SOLID * 255, dtype=bool, device=DEVICE)
+
+    def seen(self, points: Array, vertices: Array, *, away: Array, lift: float) -> Array:
+        """Which points [n] are not covered from all sides while the surface is at `vertices` [V, 3]."""
+        if not len(points):
+            return np.empty(0, bool)
+        meshes = [_mesh(vertices, faces) for faces in self._faces]
+        surface = [*(mesh.id for mesh in meshes), self._uv, self._shown]
+        directions = wp.array(away, dtype=wp.vec3, device=DEVICE)
+
+        def looked(some: Array) -> Array:
+            seen = wp.zeros(len(some), dtype=bool, device=DEVICE)
+            inputs = [*surface, wp.array(some, dtype=wp.vec3, device=DEVICE), directions, lift]
+            wp.launch(look_out, dim=len(some), inputs=inputs, outputs=[seen], device=DEVICE)
+            return np.asarray(seen.numpy())
+
+        wp.load_module(__name__, device=DEVICE)  # two threads must not do that at once
+        threads = min(os.cpu_count() or 1, len(points))
+        return np.concatenate(list(in_order(looked, np.array_split(points, threads), threads=threads)))
+
+
+def _mesh(vertices: Array, faces: Array) -> wp.Mesh:
+    """Triangles that rays meet; where there are none, a point, which none meets."""
+    some = faces if len(faces) else np.zeros((1, 3), int)
+    return wp.Mesh(
         points=wp.array(vertices, dtype=wp.vec3, device=DEVICE),
-        indices=wp.array(faces.ravel(), dtype=int, device=DEVICE),
+        indices=wp.array(some.ravel(), dtype=int, device=DEVICE),
     )
-    directions = wp.array(away, dtype=wp.vec3, device=DEVICE)
-
-    def looked(some: Array) -> Array:
-        seen = wp.zeros(len(some), dtype=bool, device=DEVICE)
-        inputs = [mesh.id, wp.array(some, dtype=wp.vec3, device=DEVICE), directions, lift]
-        wp.launch(look_out, dim=len(some), inputs=inputs, outputs=[seen], device=DEVICE)
-        return np.asarray(seen.numpy())
-
-    wp.load_module(__name__, device=DEVICE)  # two threads must not do that at once
-    threads = min(os.cpu_count() or 1, len(points))
-    return np.concatenate(list(in_order(looked, np.array_split(points, threads), threads=threads)))

@@ -21,7 +21,14 @@ from mua.texture.surfels import SurfaceFrames
 class StillTeacher:
     """Splats of a character that skinning alone moves, in the colours of its textures; `rig` is what they stand on."""
 
-    def __init__(self, character: Character, *, texels: int, template_vertices: int = 5000) -> None:
+    def __init__(
+        self,
+        character: Character,
+        *,
+        texels: int,
+        template_vertices: int = 5000,
+        corrections: Array | None = None,  # [N, 9] beside offsets, log scales and albedo (mua.fidelity.fitting)
+    ) -> None:
         """Prepare a texture of `texels` x `texels`."""
         mesh = character.mesh
         self.rig, self._template = build_rig(character, texels=texels, template_vertices=template_vertices)
@@ -29,7 +36,7 @@ class StillTeacher:
         self._skinned = SkinnedSurface(character)
         self._surface = SurfaceFrames(mesh.vertices, mesh.faces)
         self._smooth_turn = low_pass(mesh.vertices, mesh.faces, TURN_WAVELENGTH * figure_scale(mesh.vertices))
-        self._texels = SurfaceTexels(character, self.rig)
+        self._texels = SurfaceTexels(character, self.rig, corrections)
 
     def frame(
         self,

@@ -32,9 +32,17 @@ COARSE_WAVELENGTH = 0.2  # metres on a person: longer deformation moves the cano
 class SimulatedTeacher(StillTeacher):
     """Teacher frames of a character (mua.teacher) that hangs loose and stands in a light."""
 
-    def __init__(self, character: Character, *, texels: int, template_vertices: int = 5000, seed: int = 0) -> None:
+    def __init__(
+        self,
+        character: Character,
+        *,
+        texels: int,
+        template_vertices: int = 5000,
+        corrections: Array | None = None,  # as StillTeacher takes them
+        seed: int = 0,
+    ) -> None:
         """Prepare a texture of `texels` x `texels`; the seed chooses where the character's cloth folds."""
-        super().__init__(character, texels=texels, template_vertices=template_vertices)
+        super().__init__(character, texels=texels, template_vertices=template_vertices, corrections=corrections)
         mesh = character.mesh
         self._moving = SimulatedSurface(character, seed=seed)
         self._normals = vertex_normals(mesh.vertices, mesh.faces)

@@ -9,7 +9,7 @@ from mua.rig.character import Character
 from mua.rig.rig import Rig
 from mua.rig.texel_map import TexelMap, build_texel_map
 from mua.teacher import Light
-from mua.teachers.simulated.hidden import showing_instead
+from mua.teachers.simulated.hidden import SOLID, showing_instead
 from mua.texture.albedo import FINER, finer_picture, sample_albedo
 from mua.texture.deconvolution import deconvolved
 from mua.texture.depths import depths
@@ -21,14 +21,18 @@ from mua.texture.surfels import rest_surfels
 
 MOST_OPAQUE = 5.0  # logit of a texel whose alpha is 1
 MOST_CLEAR = 6.0  # negative logit of one whose alpha is 0: below what changes an 8-bit image, so that it is not drawn
-SOLID = 0.9  # opacity from which a texel hides what is behind it
 SHEEN_TINT = 0.5  # how far the sheen has the colour of the surface, as cloth does, rather than that of the lamp
 
 
 class SurfaceTexels:
     """The texels of a rig as points of the dense surface that the rig's template stands for."""
 
-    def __init__(self, character: Character, rig: Rig) -> None:
+    def __init__(
+        self,
+        character: Character,
+        rig: Rig,
+        corrections: Array | None = None,  # [N, 9] beside offsets, log scales and albedo (mua.fidelity.fitting)
+    ) -> None:
         mesh, texels = character.mesh, rig.texels
         dense = build_texel_map(mesh, texels.size)
         rows = np.searchsorted(dense.texels, texels.texels)  # those of the rig are among them
@@ -60,6 +64,10 @@ class SurfaceTexels:
             np.ascontiguousarray(rows.T, dtype=np.float32)
             for rows in (relief, surfels.smooth, surfels.log_scales, albedo[:, :3])
         )
+        if corrections is not None:
+            self._relief += corrections.T[0:3]
+            self._log_scales += corrections.T[3:6]
+            self._albedo += corrections.T[6:9]
         self._stretch = SurfelStretch(mesh.vertices, mesh.faces, triangles=triangles, rotations=surfels.smooth)
         self._turned_to_lines = np.ascontiguousarray((surfels.rotations - surfels.smooth).T, dtype=np.float32)
         alpha = np.clip(surfel_opacities(albedo[:, 3]), 1e-6, 1 - 1e-6)

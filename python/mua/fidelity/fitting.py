@@ -1,0 +1,153 @@
+"""Fits a character's splats to images of its source, by gradient descent from many sides and in several poses.
+
+Surfels laid on the surface leave gaps over creases, reach beyond edges and mix with what lies close behind them. What
+mends that is the same in every frame: an offset, a size and a colour of each texel beside its own.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from mua.arrays import Array
+from mua.avatar.camera import Camera, orbit
+from mua.avatar.decode import box_of
+from mua.channels import SH_C0
+from mua.fidelity.canvas import opened
+from mua.fidelity.compare import spread
+from mua.fidelity.painter import Painter
+from mua.fidelity.posing import Moment, Poser, skinned
+from mua.pose.clip import Clip
+from mua.rig.character import Character
+from mua.scene import Source
+from mua.splatting.posing import TorchRig, pose_splats
+from mua.splatting.projection import Eye
+from mua.splatting.rasterise import rasterise
+from mua.teachers.simulated.still import StillTeacher
+
+STEPS = 200  # each of one image
+POSES = 6  # beside that of the file
+SIDE = 1.25  # pixels along an image for a texel along the texture: what is in it changes with both alike
+NEARNESS = 2.5  # pixels for a texel in the middle of an image
+ELEVATIONS = -0.35, 0.5  # radians
+RATES = {"offset": 0.05, "size": 0.03, "colour": 0.02}  # offsets over a texel's width
+BETAS, EPSILON = (0.9, 0.99), 0.1
+PRIOR = 2.0  # pixels for which each colour stands as it is: what few images show keeps its own
+LAST_RATE = 0.01  # of a rate, in the last step
+SMALLEST, LARGEST = -1.5, 0.7  # change of a log scale
+
+
+@dataclass(frozen=True, eq=False)
+class _Shown:
+    """A pose of the uncorrected splats and of the source."""
+
+    moment: Moment
+    drawn: list[Array]  # vertices of the source's parts
+    joints: Tensor  # [J, 8]
+    mesh: Tensor  # [V, 3]
+    texture: Tensor  # [N, 23]
+    bounds: Tensor  # [2, 3]
+    centres: Array  # [N, 3]
+
+
+def fit(
+    character: Character,
+    clips: Sequence[Clip],
+    *,
+    texels: int,
+    source: Source,
+    steps: int = STEPS,
+    progress: Callable[[int], None] = lambda done: None,
+) -> Array:
+    """What to add to the offsets, log scales and albedo of this character's still teacher, [N, 9] float32.
+
+    Raises InputError where this machine has no OpenGL.
+    """
+    rng = np.random.default_rng(0)
+    teacher, side = StillTeacher(character, texels=texels), round(SIDE * texels)
+    poser = Poser(source, character.skeleton)
+    with opened() as context:
+        paint = Painter(context, source.scene.parts, source.scene.materials, screen=(side, side))
+        poses = [_shown(teacher, moment, source, character) for moment in _moments(poser, clips)]
+        return _descend(teacher, poses, paint, side=side, steps=steps, rng=rng, progress=progress)
+
+
+def _descend(
+    teacher: StillTeacher,
+    poses: Sequence[_Shown],
+    paint: Painter,
+    *,
+    side: int,
+    steps: int,
+    rng: np.random.Generator,
+    progress: Callable[[int], None],
+) -> Array:
+    """Adam on the squared error of one image after another, each on a background of its own."""
+    rig, count = TorchRig.of(teacher.rig, poses[0].texture), len(poses[0].texture)
+    changes = {name: torch.zeros(count, 3, requires_grad=True) for name in RATES}
+    optimiser = torch.optim.Adam(
+        [{"params": [change], "lr": RATES[name]} for name, change in changes.items()], betas=BETAS, eps=EPSILON
+    )
+    schedule = torch.optim.lr_scheduler.ExponentialLR(optimiser, LAST_RATE ** (1 / max(steps, 1)))
+    widths = poses[0].texture[:, 7:9].mean(dim=1, keepdim=True).exp()
+    for step in range(steps):
+        shown = poses[step % len(poses)]
+        camera, background = _camera(shown, widths, side=side, rng=rng), torch.tensor(rng.uniform(size=3)).float()
+        source = torch.tensor(paint(shown.drawn, camera))
+        target = source[..., :3] + (1 - source[..., 3:]) * background
+        splats = pose_splats(rig, shown.joints, shown.mesh, _corrected(shown.texture, _by(changes, widths)))
+        image = rasterise(splats, Eye.of(camera, shown.texture), shown.bounds, background)
+        optimiser.zero_grad()
+        ((image - target).square().sum() + PRIOR * changes["colour"].square().sum()).backward()
+        optimiser.step()
+        schedule.step()
+        progress(step + 1)
+    with torch.no_grad():
+        return np.asarray(_by(changes, widths).numpy())
+
+
+def _by(changes: dict[str, Tensor], widths: Tensor) -> Tensor:
+    """[N, 9], metres, of log scales and of display values."""
+    sizes = changes["size"].clamp(SMALLEST, LARGEST)
+    return torch.cat([changes["offset"] * widths, sizes, changes["colour"]], dim=1)
+
+
+def _corrected(texture: Tensor, by: Tensor) -> Tensor:
+    offset, size, colour = by.split(3, dim=1)
+    beside = [texture.new_zeros(len(texture), channels) for channels in (4, 1, 9)]
+    return texture + torch.cat([offset, beside[0], size, beside[1], colour / SH_C0, beside[2]], dim=1)
+
+
+def _camera(shown: _Shown, widths: Tensor, *, side: int, rng: np.random.Generator) -> Camera:
+    """A view from anywhere around the figure, about a texel, so near that this one is NEARNESS pixels wide."""
+    at = int(rng.integers(len(shown.centres)))
+    half = side * 2 * float(widths[at]) / NEARNESS / 2
+    box = shown.centres[at] + half * np.array([[-1.0], [1.0]])
+    azimuth, elevation = rng.uniform(0, 2 * np.pi), rng.uniform(*ELEVATIONS)
+    return orbit(box, screen=(side, side), azimuth=azimuth, elevation=elevation)
+
+
+def _moments(poser: Poser, clips: Sequence[Clip]) -> Iterator[Moment]:
+    """The pose of the file and frames spread over all clips."""
+    yield poser.rest()
+    for clip, frame in spread(clips, POSES):
+        yield poser.of_clip(clip, frame)
+
+
+def _shown(teacher: StillTeacher, moment: Moment, source: Source, character: Character) -> _Shown:
+    frame, scene = teacher.frame(moment.pose, moment.stretches), source.scene
+    joints = torch.tensor(character.skeleton.skinning(moment.pose.rotations, moment.pose.translations)).float()
+    mesh, texture = torch.tensor(frame.mesh).float(), torch.tensor(frame.texture).float()
+    with torch.no_grad():
+        centres = pose_splats(TorchRig.of(teacher.rig, texture), joints, mesh, texture).centres.numpy()
+    return _Shown(
+        moment=moment,
+        drawn=[skinned(scene, part, moment.nodes) for part in scene.parts],
+        joints=joints,
+        mesh=mesh,
+        texture=texture,
+        bounds=torch.tensor(box_of(centres)).float(),
+        centres=centres,
+    )

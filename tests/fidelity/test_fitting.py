@@ -1,0 +1,47 @@
+"""Splats that are fitted to images of their source."""
+
+from pathlib import Path
+
+import gltf_files
+import numpy as np
+import pytest
+
+from mua.characters.read import read_character
+from mua.fidelity.compare import compare
+from mua.fidelity.fitting import fit
+from mua.rig.character import Character
+
+TEXELS, STEPS = 48, 30
+
+
+@pytest.fixture
+def column(tmp_path: Path) -> Character:
+    """A white column with black stripes, one unit of its texture after another."""
+    picture = np.full((32, 32, 4), 255, np.uint8)
+    picture[::8, :, :3] = picture[1::8, :, :3] = 0
+    glb = gltf_files.textured(picture)
+    gltf_files.animate(glb, 1, "rotation", times=[0.0, 1.0], values=[[0, 0, 0, 1], [0, 0, np.sin(0.3), np.cos(0.3)]])
+    return read_character(glb.save(tmp_path / "column.glb"), atlas_size=128)
+
+
+def test_fitted_splats_are_nearer_to_the_source_in_all_poses(column: Character) -> None:
+    assert column.source is not None
+    corrections = fit(column, column.clips, texels=TEXELS, source=column.source, steps=STEPS)
+    laid, fitted = (
+        compare(column, column.clips, texels=TEXELS, source=column.source, corrections=by) for by in (None, corrections)
+    )
+    assert fitted.iou > laid.iou
+    for before, after in zip(laid.poses, fitted.poses, strict=True):
+        assert after.agreement.psnr > before.agreement.psnr
+
+
+def test_without_steps_nothing_is_corrected(column: Character) -> None:
+    assert column.source is not None
+    assert not np.any(fit(column, (), texels=TEXELS, source=column.source, steps=0))
+
+
+def test_the_same_character_is_fitted_alike(column: Character) -> None:
+    assert column.source is not None
+    first, second = (fit(column, column.clips, texels=TEXELS, source=column.source, steps=3) for _ in range(2))
+    assert np.array_equal(first, second)
+    assert first.any()
