@@ -50,10 +50,6 @@ def _expressions(expressions: Expressions | None, step: float) -> Expressions | 
     return expressions and replace(expressions, offsets=in_steps(expressions.offsets, step))
 
 
-def _expressions(expressions: Expressions | None, step: float) -> Expressions | None:
-    return expressions and replace(expressions, offsets=in_steps(expressions.offsets, step))
-
-
 def channel_steps(height: float) -> Array:
     """Steps [23] of the static offset of a figure of so many metres."""
     steps = np.zeros(CHANNELS)
