@@ -6,8 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from commands import process
-from synthetic_avatar import synthetic_avatar
+from synthetic_avatar import synthetic_avatar, with_expressions
 
+from mua.asset import write
 from mua.asset.count import flops, synthesis
 from mua.avatar.camera import orbit
 from mua.avatar.decode import decode_clip_frame
@@ -76,3 +77,17 @@ def test_fragments_are_the_pixels_of_all_quads(device: Device, avatar_file: Path
     seen = projected(posed, camera)
     lengths = REACH * wide_deviations(seen.ellipses[:, 4:6])
     assert found == pytest.approx(4 * lengths.prod(axis=1).sum(), rel=0.02)  # all of them inside the image
+
+
+def test_a_face_counts_beside_a_decode_that_stays_as_it_is(avatar_file: Path, tmp_path: Path) -> None:
+    path, output = tmp_path / "face.muaavatar", tmp_path / "counts.json"
+    write(path, with_expressions(synthetic_avatar()))
+    ran = process("bench", path, "--counts", "--json", output)
+    assert ran.status == 0, ran.err
+    face = json.loads(output.read_text())
+    assert face["face"]["bytes"] > 0
+    assert f"+{face['face']['flops'] / face['operations']['decode']:.1%}" in ran.out
+    process("bench", avatar_file, "--counts", "--json", output)
+    plain = json.loads(output.read_text())
+    assert plain["face"] is None
+    assert (plain["bytes"], plain["parts"]) == (face["bytes"], face["parts"])

@@ -4,7 +4,7 @@ Dispatches are those that the player appends; fragments are counted by drawing.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -16,7 +16,7 @@ from mua.avatar.camera import Camera, orbit
 from mua.avatar.coarser import coarsest, texel_length
 from mua.avatar.decode_turns import ALONE
 from mua.avatar.level_choice import LARGEST_TEXEL
-from mua.bench.work import NOTHING, Work, by_kernel
+from mua.bench.work import EXPRESSING, NOTHING, Work, by_kernel
 from mua.errors import InputError
 from mua.gpu import Bound, Device
 from mua.motion.facing import front_of
@@ -81,6 +81,7 @@ class Counts:
     rest: int  # dispatches of a frame in which only the camera moves
     drawn: tuple[Drawn, ...]
     levels: tuple[LevelCounts, ...] = ()  # the finest first
+    face: Part | None = None  # what a decode does besides where all expressions move; None: the avatar has none
 
     @property
     def kernels(self) -> dict[str, Work]:
@@ -124,6 +125,7 @@ def count(device: Device, path: Path) -> Counts:
         rest=len(posed) - [each.kernel for each in posed].index("SplatProject"),
         drawn=tuple(drawn for _, _, drawn in views),
         levels=tuple(_level(device, frame, clip, level) for level in range(coarsest(avatar) + 1)),
+        face=_face(device, frame.avatars[0], clip, share) if avatar.expressions else None,
     )
 
 
@@ -139,6 +141,7 @@ def as_json(counts: Counts) -> dict[str, Any]:
         "focal_pixels": FOCAL,
         "bytes": {name: work.bytes for name, work in works.items()},
         "operations": {name: work.flops for name, work in works.items()},
+        "face": None if counts.face is None else asdict(counts.face.work),
         "parts": [{"bytes": part.work.bytes, "dispatches": part.dispatches} for part in counts.decode],
         "dispatches": {
             "decode": counts.whole.dispatches + counts.pose.dispatches,
@@ -198,10 +201,18 @@ def _level(device: Device, frame: SplatFrame[AvatarFrame], clip: Clip, level: in
     )
 
 
-def _decode_parts(device: Device, avatar: AvatarFrame, clip: Clip, level: int = 0) -> list[tuple[Bound, ...]]:
+def _face(device: Device, avatar: AvatarFrame, clip: Clip, share: float) -> Part:
+    """What moves a face, at the finest level."""
+    parts = _decode_parts(device, avatar, clip, expressions=np.ones(len(avatar.avatar.avatar.expressions)))
+    return _part([bound for part in parts for bound in part if bound.kernel in EXPRESSING], share)
+
+
+def _decode_parts(
+    device: Device, avatar: AvatarFrame, clip: Clip, level: int = 0, expressions: Array | None = None
+) -> list[tuple[Bound, ...]]:
     """The dispatches of a decode by part."""
     window = avatar.avatar.avatar.encoding.frames(0)
-    avatar.begin(clip.rotations[window], clip.translations[window], level=level)
+    avatar.begin(clip.rotations[window], clip.translations[window], expressions, level=level)
     parts = []
     while avatar.parts_left > 0:
         commands = device.commands()

@@ -3,6 +3,7 @@
 import json
 import tempfile
 from contextlib import closing
+from dataclasses import astuple
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -24,7 +25,7 @@ from mua.files.inputs import require_file
 from mua.student.settings import PRESETS, preset
 
 if TYPE_CHECKING:  # loads wgpu
-    from mua.bench.counts import Counts
+    from mua.bench.counts import Counts, Part
     from mua.bench.measure import Measured, Timing
     from mua.bench.work import Work
     from mua.gpu import Device
@@ -118,11 +119,19 @@ def _count(device: "Device", path: Path, output: Path | None) -> None:
         moved, done = figures["bytes"][name] / 1e6, figures["operations"][name] / 1e6
         table.add_row(name.replace("_", " "), f"{moved:.1f}", f"{done:.0f}", str(figures["dispatches"].get(name, "")))
     table.add_row("rest", "", "", str(counted.rest))
+    if counted.face is not None:
+        table.add_row(*_share(counted.face, counted.whole))
     views = Table("metres", "triangles", "fragments", "overdraw", box=SIMPLE_HEAD, padding=(0, 0, 0, 1))
     for seen in counted.drawn:
         views.add_row(str(seen.distance), f"{seen.triangles:,}", f"{seen.fragments:,}", f"{seen.overdraw:.1f}")
     for shown in (Text(f"{counted.avatar}: {counted.splats:,} splats, one eye."), table, views, _levels(counted)):
         printer().print(shown)
+
+
+def _share(face: "Part", decode: "Part") -> tuple[str, ...]:
+    """What expressions add to a decode, as shares of it."""
+    moved, done = (f"+{own / all:.1%}" for own, all in zip(astuple(face.work), astuple(decode.work), strict=True))
+    return "expressions, to decode", moved, done, str(face.dispatches)
 
 
 def _levels(counted: "Counts") -> Table:
