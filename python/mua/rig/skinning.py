@@ -5,11 +5,15 @@ in one piece of memory, and joints that do not move a vertex cost nothing. Which
 added depends only on it and the vertex's first joint, so it is found once for each pair of joints, not once a vertex.
 """
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-from scipy import sparse
 
 from mua import rotation
 from mua.arrays import Array
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_matrix
 
 
 class Skinning:
@@ -56,9 +60,11 @@ class Skinning:
         blended = self._matrix(self._weights, len(joints)) @ spaces
         return np.asarray(np.einsum("vij,vj->vi", blended[:, :9].reshape(-1, 3, 3), points) + blended[:, 9:])
 
-    def _matrix(self, weights: Array, joints: int) -> sparse.csr_matrix:
+    def _matrix(self, weights: Array, joints: int) -> "csr_matrix":
         """The weights of each vertex as a sparse matrix [V, joints]."""
-        return sparse.csr_matrix((weights, self._joints, self._starts), shape=(len(self._starts) - 1, joints))
+        from scipy.sparse import csr_matrix  # here, because it is slow to import and few need it
+
+        return csr_matrix((weights, self._joints, self._starts), shape=(len(self._starts) - 1, joints))
 
 
 def transform(
