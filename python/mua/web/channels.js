@@ -145,8 +145,8 @@ export class ChannelDecoder {
     this.layer(pass, this.kernels.MlpMatmulTransposed, mesh, { x, y: channels.mesh }, MESH_COLUMNS, false);
   }
 
-  /** Move the vertices of expressions, and bend the texels in reach. */
-  express(/** @type {GPUComputePassEncoder} */ pass, /** @type {ChannelSet} */ { level, weights, mesh, texelChannels }) {
+  /** Move the vertices of expressions, and bend the texels in reach. @param {GPUComputePassEncoder} pass @param {ChannelSet} channels */
+  express(pass, { level, weights, mesh, texelChannels }) {
     const { memory, expressions: targets, faces } = this.buffers;
     const { moved, bends } = this;
     const { vertices, starts, expressions, offsets, vertexCount, triangles, triangleCount } = targets;

@@ -8,8 +8,8 @@ import { indices, MAX_BYTES, reals } from "./tensors.js";
 
 /** Names of expressions and what each moves; none where the file has none. @param {Tree | undefined} tree @param {number} vertices of the template @returns {{names: string[], targets: Targets}} */
 export function readExpressions(tree, vertices) {
-  if (!tree)
-    return { names: [], targets: { starts: new Int32Array(1), vertices: new Int32Array(), offsets: new Float32Array() } };
+  const none = { starts: new Int32Array(1), vertices: new Int32Array(), offsets: new Float32Array() };
+  if (!tree) return { names: [], targets: none };
   /** @type {string[]} */
   const names = tree.names;
   const wrong = names.findIndex((name, i) => !name || names.indexOf(name) < i);
