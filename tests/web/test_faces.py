@@ -8,10 +8,9 @@ import numpy as np
 import pytest
 from synthetic_avatar import synthetic_avatar, with_expressions, with_surface
 from web.browser import Page
-from web.engine import LEAST_PSNR, SPLATS, Open, desktop, load, opened, psnr, screenshot, show
+from web.engine import LEAST_PSNR, SHOWN, SPLATS, Open, desktop, load, opened, psnr, screenshot, show
 from web.test_posing import CLOCK, pose_of
 
-from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.asset.write import encode
 from mua.gpu import Device
@@ -21,6 +20,7 @@ __all__ = ["opened"]  # fixture
 BODY = with_surface(synthetic_avatar())
 AVATAR = with_expressions(BODY)
 FRAME = 3
+GEOMETRY = SHOWN["geometry"]  # in which a small face counts for more than in its splats
 WEIGHTS = [0.25, 1.0, 0.5, 0.75]
 READ = """globalThis.bytesOf = async ({ shown }) => {
   const texts = [];
@@ -71,20 +71,23 @@ def test_a_face_moves_by_the_clip_and_by_the_page_as_on_the_desktop(
     assert load(page) == ""
     show(page, SPLATS, FRAME, rate)
     still = saved(tmp_path / "still.muaavatar", weighted(AVATAR, [0.0] * 4))
-    resting = desktop(device, still, page, FRAME)
+    resting = desktop(device, still, page, FRAME, GEOMETRY)
 
-    def assert_drawn(expected: Array) -> None:
-        assert psnr(screenshot(page), expected) > LEAST_PSNR
-        assert psnr(resting, expected) < LEAST_PSNR
+    def assert_drawn(file: Path, frame: int) -> None:
+        found = screenshot(page)
+        assert psnr(found, desktop(device, file, page, frame, GEOMETRY)) > LEAST_PSNR
+        assert psnr(found, resting) < LEAST_PSNR
 
-    assert_drawn(desktop(device, face, page, FRAME))
+    assert psnr(screenshot(page), desktop(device, face, page, FRAME)) > LEAST_PSNR
+    show(page, GEOMETRY, FRAME, rate)
+    assert_drawn(face, FRAME)
     page.evaluate(f"avatar.setExpressions({named(WEIGHTS)})")
-    assert_drawn(desktop(device, saved(tmp_path / "set.muaavatar", weighted(AVATAR, WEIGHTS)), page, FRAME))
+    assert_drawn(saved(tmp_path / "set.muaavatar", weighted(AVATAR, WEIGHTS)), FRAME)
     clip = resample(AVATAR.clips[0], rate)
     held = weighted(replace(AVATAR, clips=(clip.cut(slice(FRAME, FRAME + 1)),)), WEIGHTS)
     pose = {**pose_of(AVATAR, FRAME), "expressions": WEIGHTS}
     page.evaluate(f"(avatar.setExpressions(null), avatar.setPose({json.dumps(pose)}))")
-    assert_drawn(desktop(device, saved(tmp_path / "held.muaavatar", held), page, 0))
+    assert_drawn(saved(tmp_path / "held.muaavatar", held), 0)
 
 
 def test_weights_of_0_give_the_bytes_of_the_avatar_without(opened: Open, face: Path) -> None:
