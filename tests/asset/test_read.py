@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from damaged import DAMAGED
-from malformed import EXPRESSIVE, MALFORMED, flipped, malformed, seal_unread, times
+from malformed import EXPRESSIVE, MALFORMED, crowded, flipped, malformed, seal_unread, times
 from synthetic_avatar import synthetic_avatar, with_expressions, with_surface
 from unpackable import UNPACKABLE
 
@@ -100,25 +100,8 @@ def test_malformed_expression_is_named(storage: Storage, code: str, field: str, 
 
 @pytest.mark.parametrize(("expressions", "sound"), [(1, True), (600, False)])
 def test_weights_count_among_what_clips_gain(expressions: int, sound: bool) -> None:
-    """Frames enough that 3 joints of each stay within 2^24 at a thousand times the clip's rate, and 603 do not."""
-
-    def edit(tree: Tree) -> None:
-        clip, frames = tree["clips"][0], 40
-        tree["encoding"]["rate"], clip["rate"] = 1000.0, 1.0
-        for name in ("rotations", "translation", "translations"):
-            whole = np.resize(clip[name]["data"].view("<f4"), (frames, *clip[name]["shape"][1:]))
-            clip[name] = pack(whole)
-        tree["expressions"]["names"] = [f"{n}" for n in range(expressions)]
-        tree["expressions"] |= {
-            "starts": pack_indices(np.zeros(expressions + 1)),
-            "vertices": pack_indices(np.zeros(0)),
-        }
-        tree["expressions"]["offsets"], clip["expressions"] = (
-            pack(np.zeros((0, 3))),
-            pack(np.ones((frames, expressions))),
-        )
-
-    content = malformed(encode(with_expressions(synthetic_avatar()), storage="f32"), edit)
+    """3 joints and an expression in each frame stay within 2^24 numbers at the rate of the encoding, and 603 do not."""
+    content = malformed(encode(with_expressions(synthetic_avatar()), storage="f32"), crowded(expressions))
     with nullcontext() if sound else pytest.raises(FormatError, match="too many for the encoding's rate"):
         decode(content)
 

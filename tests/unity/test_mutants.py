@@ -93,19 +93,21 @@ def test_readers_agree_on_mutants_and_what_they_accept_is_finite(
 
 
 @pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="needs Linux, which bounds what a process may take")
+@pytest.mark.skipif(lacking(), reason="needs Node 20.12 or later")
 @pytest.mark.parametrize("seeds", blocks(), ids=lambda seeds: f"{seeds.start}-{seeds.stop}")
 def test_mutants_with_expressions_are_refused_or_move_a_face_as_the_page_says(
-    csharp_reader: Reader, tmp_path: Path, seeds: range
+    csharp_reader: Reader, web_reader: Reader, tmp_path: Path, seeds: range
 ) -> None:
     """In bounded memory and time, to finite numbers; a decoder written from the page moves and bends as ours does.
 
-    The C# reader answers alike and gives the same values.
+    The C# reader answers alike and gives the same values; the browser's answers alike.
     """
     sound = [encode(with_expressions(synthetic_avatar()), storage=storage) for storage in STORAGES]
     codes, moving = Counter[str](), 0
     for seed in seeds:
         content = expression_mutant(sound, seed)
         csharp_reader.give(content)
+        web_reader.give(content)
         with telling(f"expression_mutant {seed}"), within(SECONDS), room(ROOM):
             code, field = answer(content)
             if code == "ok":
@@ -114,6 +116,10 @@ def test_mutants_with_expressions_are_refused_or_move_a_face_as_the_page_says(
         with telling(f"C#: expression_mutant {seed}"):
             allocated, *found = csharp_reader.answer().split("\t")[:3]
         assert (seed, *found) == (seed, code, field)
+        with telling(f"JavaScript: expression_mutant {seed}"):
+            *found, taken = json.loads(web_reader.answer())
+        assert (seed, *found) == (seed, *([code, field] if code != "ok" else ["ok"]))
+        assert taken < WEB_ROOM, seed
         assert int(allocated) < CSHARP_ROOM * len(content) + WORDS or int(allocated) < largest(content), seed
         codes[code] += 1
     print(f"expression_mutant {seeds.start} to {seeds.stop - 1}: {codes['ok']} accepted, {moving} move, {dict(codes)}")

@@ -4,6 +4,7 @@
 //                  and the most bytes that this process has taken by then
 //   measured RUNS  of a file that is read so often: processor seconds of each, and the most bytes that the first took
 //   values FRAMES  of the file's first clip, those frames: descriptors, components, joints, boxes; and what the kernels read
+//   expressions FRAMES  of a file: their names, what they move, the reach at every level, weights at frames of the first clip
 //   stages STEP    of a file that arrives in such steps: how much was there, and what it shows, or code and field of the fault
 //   soon TOTAL BYTES...  whether the rest of so many bytes is expected soon, after so many more every 100 ms; 0: none came
 //   played CHANGES of a file: clip, time, frame, next frame and box after each change, such as ["speed", 2] or ["advance", 40]
@@ -37,7 +38,7 @@ import { groundHeight, shadowArea } from "../../python/mua/web/overlays.js";
 import { boxAround } from "../../python/mua/web/placement.js";
 import { Playback } from "../../python/mua/web/playback.js";
 import { outward } from "../../python/mua/web/pose.js";
-import { texelTiles, texelWords, upsamplingTaps } from "../../python/mua/web/prepare.js";
+import { byVertex, reachOf, texelTiles, texelWords, upsamplingTaps } from "../../python/mua/web/prepare.js";
 import { rolesOf } from "../../python/mua/web/retarget/joint_names.js";
 import { readClip } from "../../python/mua/web/retarget/read.js";
 import { follow } from "../../python/mua/web/retarget/rig.js";
@@ -110,6 +111,18 @@ function values(avatar, frames) {
   };
 }
 
+/** What expressions move, at every level, and their weights at frames of the first clip. */
+function expressed(avatar, frames) {
+  const { skeleton, encoding, template, expressions, clips } = avatar;
+  const lists = (one) => Object.fromEntries(Object.entries(one).map(([name, values]) => [name, list(values)]));
+  const targets = byVertex(avatar.targets);
+  let texture = textureOf(avatar);
+  const textures = [texture, ...avatar.texels.levels.map(() => (texture = coarserTexture(avatar, texture)))];
+  const reach = textures.map(({ triangles }) => lists(reachOf(targets.vertices, template.faces, triangles)));
+  const weights = frames.map((frame) => list(sample(skeleton, clips[0], frame, encoding.rate).expressions));
+  return { names: expressions, targets: lists(targets), reach, weights };
+}
+
 /** What plays after each change. */
 function played(avatar, changes) {
   const handle = handleOf(avatar, { remove() {}, outside: () => 0 });
@@ -179,11 +192,13 @@ async function stages(content, step) {
     const end = known.reached(got);
     if (!end) continue;
     try {
-      const { clips, surface, texels, geometry } = await readStage(arriving.buffer, end);
+      const { clips, surface, texels, geometry, expressions, targets } = await readStage(arriving.buffer, end);
       const sum = ({ data }) => data.reduce((all, byte) => all + byte, 0);
       const { llMean, llBasis, staticOffset } = geometry;
       const [mean, low, details, fixed] = [llMean, llBasis, geometry.details[0].h, staticOffset].map(sum);
-      found.push({ end, got, clips: clips.length, surface, texels: texels.texels.length, mean, low, details, fixed });
+      const face = { expressions, weights: list(clips[0].expressions ?? []), moved: targets.vertices.length };
+      const shown = { clips: clips.length, surface, texels: texels.texels.length, mean, low, details, fixed, face };
+      found.push({ end, got, ...shown });
     } catch (error) {
       if (error.name !== "AvatarError") throw error;
       found.push({ end, got, code: error.code, field: error.field });
@@ -313,6 +328,7 @@ if (what === "truncated") {
     say(await answer(content.slice(0, length)));
 }
 if (what === "values") say(values(await read(bytes(given[0])), given.slice(1).map(Number)));
+if (what === "expressions") say(expressed(await read(bytes(given[0])), given.slice(1).map(Number)));
 if (what === "played") say(played(await read(bytes(given[0])), JSON.parse(given[1])));
 if (what === "levels") say(levels(await read(bytes(given[0]))));
 if (what === "choices")

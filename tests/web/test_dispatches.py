@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from synthetic_avatar import synthetic_avatar
+from synthetic_avatar import synthetic_avatar, with_expressions
 from web.test_modules import SECONDS, pytestmark
 
 from mua import rotation
@@ -54,9 +54,10 @@ def desktop(device: Device, file: Path, cameras: Sequence[Camera]) -> list[dict[
     (first, then), aside = windows, rotation.dual_from_rigid(np.array([1.0, 0, 0, 0]), np.array([0.5, 0, -1]))
     frame = AvatarFrame(device, buffers)
     splats = SplatFrame(device, [frame])
-    frame.decode(commands, first.rotations, first.translations, aside)
+    weights = [None if window.expressions is None else window.expressions[0] for window in windows]
+    frame.decode(commands, first.rotations, first.translations, aside, expressions=weights[0])
     splats.sort(commands, cameras[:1])
-    frame.begin(then.rotations, then.translations, level=coarsest(avatar))
+    frame.begin(then.rotations, then.translations, weights[1], level=coarsest(avatar))
     while frame.parts_left:
         frame.advance(commands)
     frame.show()
@@ -83,9 +84,10 @@ def browser(file: Path, cameras: Sequence[Camera]) -> list[dict[str, Any]]:
     return [json.loads(one) for one in ran.stdout.splitlines()]
 
 
+@pytest.mark.parametrize("change", [lambda avatar: avatar, with_expressions], ids=["body", "face"])
 @pytest.mark.parametrize("storage", ["f16", "i8"])
-def test_the_browser_makes_the_desktops_dispatches(tmp_path: Path, storage: Any) -> None:
-    avatar, file = synthetic_avatar(), tmp_path / "a.muaavatar"
+def test_the_browser_makes_the_desktops_dispatches(tmp_path: Path, change: Any, storage: Any) -> None:
+    avatar, file = change(synthetic_avatar()), tmp_path / "a.muaavatar"
     write(file, avatar, storage=storage)
     box = avatar.bounds + root_positions(avatar.rig, avatar.clips[0])[0]
     nearer = perspective(0.6, aspect=96 / 64, near=0.005)  # as for a small figure

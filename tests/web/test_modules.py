@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 import pytest
 from damaged import DAMAGED
-from malformed import MALFORMED, malformed
-from synthetic_avatar import sparse_avatar, synthetic_avatar, with_random_poses, with_surface
+from malformed import EXPRESSIVE, MALFORMED, crowded, malformed
+from synthetic_avatar import sparse_avatar, synthetic_avatar, with_expressions, with_random_poses, with_surface
 from turn_scenarios import decided, run, timed, wander, written
 from unpackable import UNPACKABLE
 
@@ -26,6 +26,7 @@ from mua.asset.write import encode
 from mua.avatar.camera import EYE_DISTANCE, orbit, perspective, sees, stereo
 from mua.avatar.coarser import REACH, at_level, coarsest, texel_length
 from mua.avatar.level_choice import splat_corners, texel_pixels
+from mua.kernels.expressions import by_vertex, reach_of
 from mua.kernels.inverse_dwt import texel_tiles, upsampling_taps
 from mua.kernels.splat_project import pack_texels
 from mua.player.draw import view_projection
@@ -93,14 +94,17 @@ def content() -> bytes:
 @pytest.mark.parametrize("storage", ["f32", "f16", "i8", "packed"])
 def test_sound_files_are_read(tmp_path: Path, storage: Any) -> None:
     avatars = [synthetic_avatar(), with_surface(synthetic_avatar()), sparse_avatar(3)]
-    assert answers(tmp_path, [encode(avatar, storage=storage) for avatar in avatars]) == [["ok"]] * 3
+    avatars.append(with_expressions(synthetic_avatar()))
+    assert answers(tmp_path, [encode(avatar, storage=storage) for avatar in avatars]) == [["ok"]] * 4
 
 
 def test_malformed_files_get_the_same_sentence(tmp_path: Path, content: bytes) -> None:
     files = [malformed(content, edit) for _, _, edit in MALFORMED] + [damage(content) for _, _, damage in DAMAGED]
     network = encode(with_surface(synthetic_avatar()), storage="packed")
     files += [malformed(network, edit) for _, _, edit in UNPACKABLE]
-    expected = [(code, field) for code, field, _ in [*MALFORMED, *DAMAGED, *UNPACKABLE]]
+    face = encode(with_expressions(synthetic_avatar()), storage="f16")
+    files += [malformed(face, edit) for _, _, edit in EXPRESSIVE]
+    expected = [(code, field) for code, field, _ in [*MALFORMED, *DAMAGED, *UNPACKABLE, *EXPRESSIVE]]
     found = answers(tmp_path, files)
     assert [tuple(answer[:2]) for answer in found] == expected
     reported = [(answer, file) for answer, file in zip(found, files, strict=True) if answer[0] != "packed"]
@@ -226,6 +230,36 @@ def test_coarser_levels_are_those_of_python(tmp_path: Path, made: str) -> None:
         np.testing.assert_array_equal(level["words"][::2], words[:, 0])
         np.testing.assert_array_equal(level["geometry"], expected.geometry.static.ravel())
         np.testing.assert_array_equal(level["appearance"], expected.appearance.static.ravel())
+
+
+@pytest.mark.parametrize("storage", ["f32", "packed"])
+def test_expressions_are_those_of_python(tmp_path: Path, storage: Any) -> None:
+    """What a thread for each vertex reads, which texels are in reach at every level, and the weights of a clip."""
+    path = tmp_path / "a.muaavatar"
+    write(path, faster(with_expressions(sparse_avatar(2))), storage=storage)
+    avatar, [found] = read(path), node("expressions", path, *FRAMES)
+    held = avatar.rig.expressions
+    assert held is not None
+    assert found["names"] == list(held.names)
+    targets = by_vertex(held.starts, held.vertices, held.offsets)
+    for name in ("vertices", "starts", "expressions", "offsets"):
+        np.testing.assert_array_equal(found["targets"][name], getattr(targets, name).ravel(), err_msg=name)
+    for number, level in enumerate(found["reach"]):
+        reach = reach_of(targets.vertices, avatar.rig.mesh.faces, at_level(avatar, number).rig.texels.triangles)
+        np.testing.assert_array_equal(level["triangles"], reach.triangles)
+        np.testing.assert_array_equal(level["texels"], reach.texels.ravel())
+    assert len(found["reach"]) == 3
+    clip = resample(avatar.clips[0], avatar.encoding.rate)
+    assert clip.expressions is not None
+    np.testing.assert_allclose(found["weights"], clip.expressions[FRAMES], rtol=0, atol=ROUNDED)
+
+
+def test_weights_count_among_what_clips_gain(tmp_path: Path) -> None:
+    """40 frames at a thousand times their rate: 3 joints of each stay within 2^24, 603 numbers do not."""
+    content = encode(with_expressions(synthetic_avatar()), storage="f32")
+    files = [malformed(content, crowded(expressions)) for expressions in (1, 600)]
+    assert answers(tmp_path, files) == [python_answer(file) for file in files]
+    assert [len(python_answer(file)) for file in files] == [1, 3]
 
 
 def test_levels_are_chosen_as_everywhere() -> None:

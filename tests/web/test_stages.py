@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 from malformed import malformed
-from synthetic_avatar import synthetic_avatar, with_surface
+from synthetic_avatar import synthetic_avatar, with_expressions, with_surface
 from unpackable import trailing
 from web.browser import Page
 from web.pages import ELEMENT, SENTENCE
@@ -74,6 +74,16 @@ def test_each_stage_shows_more_as_soon_as_it_is_there(tmp_path: Path, packed: by
         [True, True, True, True],
     ]
     assert all((one["clips"], one["surface"]) == (1, None) for one in found)
+
+
+def test_expressions_have_names_before_they_move_anything(tmp_path: Path) -> None:
+    """So that a page may set weights, which the clip has too."""
+    avatar = with_expressions(synthetic_avatar())
+    found = [one["face"] for one in stages(tmp_path, encode(avatar, storage="packed"))]
+    assert len(found) == 4
+    weights = avatar.clips[0].expressions
+    assert weights is not None
+    assert found == [{"expressions": list(avatar.expressions), "weights": weights.ravel().tolist(), "moved": 0}] * 4
 
 
 def test_of_stages_that_arrive_together_only_the_last_is_shown(tmp_path: Path, packed: bytes) -> None:

@@ -1,7 +1,7 @@
 // An avatar's tensors on the device, in the type in which the file stores them. Reference: python/mua/player/buffers.py.
 
 import { coarserTexture, textureOf } from "./coarser.js";
-import { texelTiles, texelWords, upsamplingTaps } from "./prepare.js";
+import { byVertex, reachOf, texelTiles, texelWords, upsamplingTaps } from "./prepare.js";
 
 /** @typedef {import("./device.js").Memory} Memory */
 /** @typedef {import("./format/read.js").Avatar} Avatar */
@@ -19,6 +19,8 @@ import { texelTiles, texelWords, upsamplingTaps } from "./prepare.js";
  * @property {number} tileCount
  * @property {GPUBuffer} tiles
  * @property {GPUBuffer} tileRows
+ * @property {GPUBuffer} reached [K, 2] texels that expressions may bend, and their triangle's place
+ * @property {number} reachedCount
  * @property {BranchLevel} geometry
  * @property {BranchLevel} appearance
  */
@@ -47,11 +49,28 @@ export class AvatarBuffers {
     this.faces = memory.buffer(template.faces, "template.faces");
     this.skinIndices = memory.buffer(template.skinIndices, "template.skin_indices");
     this.skinWeights = memory.buffer(template.skinWeights, "template.skin_weights");
+    this.targets = byVertex(avatar.targets);
+    this.expressions = this.uploadTargets();
     const statics = { geometry: avatar.geometry.staticOffset, appearance: avatar.appearance.staticOffset };
     /** @type {LevelBuffers[]} */
     this.levels = [this.levelOf(texels, statics, 0)];
     /** @type {import("./coarser.js").Texture | null} */
     this.coarser = null; // what the coarsest level so far was made of
+  }
+
+  /** What moves each vertex that any expression moves, and the triangles in their reach. */
+  uploadTargets() {
+    const { memory, avatar, targets } = this;
+    const { triangles } = reachOf(targets.vertices, avatar.template.faces, new Int32Array());
+    return {
+      vertices: memory.buffer(targets.vertices, "expressions.vertices"),
+      starts: memory.buffer(targets.starts, "expressions.starts"),
+      expressions: memory.buffer(targets.expressions, "expressions.vertices"),
+      offsets: memory.buffer(targets.offsets, "expressions.offsets"),
+      vertexCount: targets.vertices.length,
+      triangles: memory.buffer(triangles, "expressions.vertices"),
+      triangleCount: triangles.length,
+    };
   }
 
   /** A level of detail, at most the coarsest of the avatar; made when it is first asked for. @returns {LevelBuffers} */
@@ -70,6 +89,7 @@ export class AvatarBuffers {
     /** @type {number} */ number,
   ) {
     const { tiles, rows } = texelTiles(texels);
+    const reached = reachOf(this.targets.vertices, this.avatar.template.faces, texels.triangles).texels;
     return {
       number,
       size: texels.size,
@@ -78,6 +98,8 @@ export class AvatarBuffers {
       tileCount: tiles.length,
       tiles: this.memory.buffer(tiles, "texels.texels"),
       tileRows: this.memory.buffer(rows, "texels.texels"),
+      reached: this.memory.buffer(reached, "expressions.vertices"),
+      reachedCount: reached.length / 2,
       geometry: this.branchLevel("geometry", statics.geometry, number),
       appearance: this.branchLevel("appearance", statics.appearance, number),
     };

@@ -26,6 +26,8 @@ import { VR } from "./vr.js";
  * @property {LivePose | null} live and what is decoded of it
  * @property {boolean} fresh whether it has set something since
  * @property {Float32Array | null} weights of expressions that the page has set
+ * @property {Float32Array | null} taken those of them that pictures show
+ * @property {number} since when, milliseconds
  * @property {number} changes of these and of clips, which tell decodes apart
  * @property {Clip[]} added by the page
  * @property {number} asked clips so far
@@ -175,8 +177,9 @@ export class Engine {
 
   /** @returns {Entry} */
   entry(/** @type {Avatar} */ avatar, /** @type {import("./renderer.js").Slot} */ slot) {
-    const posed = { pose: null, live: null, fresh: false, weights: null, changes: 0, added: [], asked: 0 };
-    return { avatar, slot, grounds: new Map(), handle: handleOf(avatar, this), ...posed };
+    const posed = { pose: null, live: null, fresh: false, changes: 0, added: [], asked: 0 };
+    const expressed = { weights: null, taken: null, since: -Infinity };
+    return { avatar, slot, grounds: new Map(), handle: handleOf(avatar, this), ...posed, ...expressed };
   }
 
   /** @type {import("./handle.js").Asks["setPose"]} */
@@ -196,7 +199,6 @@ export class Engine {
     const weights = given && weightsFrom(entry.avatar.expressions, entry.weights, given);
     if (String(weights) === String(entry.weights)) return;
     entry.weights = weights;
-    entry.changes += 1;
     entry.fresh = true;
     this.onchange?.();
   }
@@ -221,9 +223,10 @@ export class Engine {
     return follow(this.entryOf(handle)?.avatar, rig, options);
   }
 
-  /** Take the poses that pages have set, as of a time of the display or the headset, milliseconds. */
-  takePoses(now = performance.now()) {
+  /** Take the poses and weights that pages have set, as of a time of the display or the headset, milliseconds. */
+  takePoses(now = performance.now(), exact = this.exact) {
     for (const entry of this.entries) {
+      this.takeWeights(entry, now, exact);
       entry.fresh = false;
       if (!entry.pose) continue;
       const pose = weighted(entry.pose, entry.weights);
@@ -232,9 +235,23 @@ export class Engine {
     }
   }
 
+  /** Take the weights of an avatar: each change is a decode, so that one after the other comes at most once in its frames. */
+  takeWeights(/** @type {Entry} */ entry, /** @type {number} */ now, /** @type {boolean} */ exact) {
+    const early = !exact && Math.abs(now - entry.since) * entry.avatar.encoding.rate < 1000;
+    if (entry.weights === entry.taken || early) return;
+    entry.taken = entry.weights;
+    entry.since = now;
+    entry.changes += 1;
+  }
+
   /** Whether pictures change by themselves. */
   get moving() {
-    return this.playing || this.entries.some(({ pose, live, fresh }) => pose && (fresh || !live?.settled));
+    return this.playing || this.entries.some((entry) => entry.weights !== entry.taken || posing(entry));
+  }
+
+  /** Whether a picture shows exactly what is asked for, else the next frame is decoded ahead. */
+  get exact() {
+    return this.show.geometry || !(this.request || this.vr);
   }
 
   /** @param {AvatarHandle} handle @returns {Entry | undefined} */
@@ -343,10 +360,9 @@ export class Engine {
 
   /** What a picture shows now. @returns {import("./renderer.js").Posed[]} */
   posed() {
-    const { playback } = this;
-    const exact = this.show.geometry || !(this.request || this.vr); // else the next frame is decoded ahead
+    const { playback, exact } = this;
     return this.entries.map((entry) => {
-      const { avatar, slot, handle, live, weights } = entry;
+      const { avatar, slot, handle, live, taken: weights } = entry;
       const frame = live?.due ?? playback.frameOf(avatar);
       const following = live || exact ? frame : playback.followingOf(avatar);
       const ground = this.show.shadow ? groundOf(entry, playback) : 0;
@@ -389,7 +405,7 @@ export class Engine {
   async screenshot() {
     await this.renderer?.compile();
     if (!this.renderer) throw new AvatarError(AWAY);
-    this.takePoses();
+    this.takePoses(performance.now(), true);
     return this.renderer.picture(this.posed(), this.look);
   }
 
@@ -455,6 +471,11 @@ export class Engine {
     this.renderer?.destroy();
     this.renderer = null;
   }
+}
+
+/** Whether the window of poses that a page sets still changes. */
+function posing(/** @type {Entry} */ { pose, live, fresh }) {
+  return pose !== null && (fresh || !live?.settled);
 }
 
 function asAvatarError(/** @type {unknown} */ error, /** @type {string} */ what) {

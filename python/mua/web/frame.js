@@ -44,6 +44,8 @@ export class AvatarFrame {
       outside: 0,
       mesh: memory.buffer(FLOAT * 3 * this.vertexCount, "mesh"),
       texelChannels: memory.buffer(TEXEL_CHANNELS * level.splatCount, "texel_channels"),
+      weights: memory.buffer(FLOAT * avatar.expressions.length, "weights"),
+      expressive: false,
     };
   }
 
@@ -64,7 +66,7 @@ export class AvatarFrame {
 
   /**
    * Append all parts of a decode, whose channels are shown from then on; one that was begun is given up.
-   * The components are written to the device at once: submit before the next decode.
+   * Components and weights are written to the device at once: submit before the next decode.
    * @param {GPUComputePassEncoder} pass @param {Pose[]} window newest first @param {number} level of detail, 0 being the finest
    */
   decode(pass, window, level) {
@@ -97,6 +99,9 @@ export class AvatarFrame {
     const { held, outside } = readComponents(encoding, describe(skeleton, encoding, window));
     channels.outside = outside;
     this.device.write(channels.components, Float32Array.from(held));
+    const [{ expressions }] = window;
+    channels.expressive = expressions?.some((weight) => weight !== 0) ?? false;
+    if (expressions && channels.expressive) this.device.write(channels.weights, expressions);
   }
 
   /**

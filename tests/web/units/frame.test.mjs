@@ -19,7 +19,7 @@ function frameOf() {
     buffers: { avatar, level },
     device: { write() {} },
     hidden: null,
-    shown: { outside: 0, components: "shown" },
+    shown: { outside: 0, components: "shown", weights: "weights" },
   });
   frame.decoder = { part() {} };
   frame.createChannels = () => ({ outside: 0, components: "hidden" });
@@ -53,6 +53,22 @@ test("what is known of a pose is reported once it is shown", () => {
   const before = frame.outside;
   frame.decode("pass", windowAt(0), 0);
   assert.ok(frame.outside < before);
+});
+
+test("a face is decoded by the weights of the newest pose, and left as it is where all are 0", () => {
+  const frame = frameOf();
+  const written = [];
+  frame.device.write = (buffer, content) => buffer === "weights" && written.push(Array.from(content));
+  const express = (...weights) => {
+    const poses = windowAt(0).map((pose, age) => ({ ...pose, expressions: weights[age] ?? Float32Array.of(0.5, 0.5) }));
+    frame.decode("pass", poses, 0);
+    return frame.shown.expressive;
+  };
+  assert.equal(express(Float32Array.of(0.25, 1)), true);
+  assert.equal(express(Float32Array.of(0, 0)), false);
+  assert.deepEqual(written, [[0.25, 1]]);
+  frame.decode("pass", windowAt(0), 0);
+  assert.equal(frame.shown.expressive, false, "of poses without weights");
 });
 
 test("an avatar is as near as it stands", () => {

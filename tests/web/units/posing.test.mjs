@@ -218,6 +218,23 @@ test("weights that are set go with clip and pose alike, and are forgotten on req
   assert.deepEqual(Array.from(posedAt(engine, 3)[0].live.current.expressions), [0.5, 1]);
 });
 
+test("weights that change quickly are taken once in a frame of the avatar, and the last of them are", async () => {
+  const { engine, handles } = await begun(await avatarOf({ expressions: ["blink", "smile"] }));
+  engine.playing = false;
+  engine.request = 1; // pictures follow each other
+  const smileAt = (frames) => posedAt(engine, 1 + frames / RATE)[0].weights[1];
+  handles[0].setExpressions({ smile: 0.25 });
+  assert.deepEqual([engine.moving, smileAt(0), engine.moving], [true, 0.25, false]);
+  const { stamp } = posedAt(engine, 1)[0];
+  handles[0].setExpressions({ smile: 0.5 });
+  assert.deepEqual([smileAt(0.4), engine.moving, posedAt(engine, 1)[0].stamp === stamp], [0.25, true, true]);
+  handles[0].setExpressions({ smile: 0.75 });
+  assert.deepEqual([smileAt(1.1), engine.moving, posedAt(engine, 1)[0].stamp === stamp], [0.75, false, false]);
+  engine.request = 0; // a picture alone
+  handles[0].setExpressions({ smile: 1 });
+  assert.equal(smileAt(1.2), 1);
+});
+
 test("weights that are set again change nothing", async () => {
   const { engine, handles } = await begun(await avatarOf({ expressions: ["blink", "smile"] }));
   let changes = 0;

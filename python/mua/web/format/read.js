@@ -2,6 +2,7 @@
 // and sentence of the Python reader. Reference: python/mua/asset/read.py.
 
 import { checksum } from "./checksum.js";
+import { readExpressions, readWeights } from "./expressions.js";
 import { LARGEST_RATE, LEAST_RATE, LEAST_SCALE, MAX_ADDED, MAX_FRAMES, MAX_WINDOW, STAGES } from "./limits.js";
 import { checkMagnitude } from "./magnitude.js";
 import { readBranch, readCoarse, readWavelet } from "./model.js";
@@ -81,14 +82,13 @@ function decode(/** @type {Tree} */ tree) {
   const geometry = readBranch(tree.geometry, "geometry", GEOMETRY_CHANNELS, of);
   const appearance = readBranch(tree.appearance, "appearance", APPEARANCE_CHANNELS, of);
   checkMagnitude(encoding, wavelet, coarse, { geometry, appearance });
-  const clips = readClips(tree.clips, skeleton, encoding.rate);
+  const { names: expressions, targets } = readExpressions(tree.expressions, coarse.vertices);
+  const clips = readClips(tree.clips, skeleton, expressions.length, encoding.rate);
   const bounds = readBounds(tree.bounds);
   const { name, producer, notes } = /** @type {Record<string, string>} */ (tree);
   const thumbnail = readThumbnail(tree.thumbnail);
   const surface = readSurface(tree.surface, texels);
-  const model = { skeleton, encoding, wavelet, coarse, template, texels, geometry, appearance, surface };
-  /** @type {string[]} */
-  const expressions = tree.expressions?.names ?? []; // what they move is not drawn here yet
+  const model = { skeleton, encoding, wavelet, coarse, template, texels, geometry, appearance, surface, targets };
   return { name, producer, notes, ...model, clips, bounds, thumbnail, expressions };
 }
 
@@ -134,13 +134,14 @@ function readRate(/** @type {Tree} */ tree, /** @type {string} */ path) {
   return rate;
 }
 
-function readClips(/** @type {Tree[]} */ trees, /** @type {Skeleton} */ skeleton, /** @type {number} */ encodingRate) {
+/** @param {Tree[]} trees @param {Skeleton} skeleton @param {number} expressions of the avatar @param {number} encodingRate */
+function readClips(trees, skeleton, expressions, encodingRate) {
   let added = 0;
   return trees.map((tree, i) => {
     /** @type {Clip} */
-    const clip = readClip(tree, `clips[${i}]`, skeleton);
+    const clip = readClip(tree, `clips[${i}]`, skeleton, expressions);
     const times = Math.max(encodingRate / clip.rate, 1);
-    added += (times - 1) * clip.frames * skeleton.names.length;
+    added += (times - 1) * clip.frames * (skeleton.names.length + (clip.expressions ? expressions : 0));
     if (times * clip.frames > MAX_FRAMES || added > MAX_ADDED) {
       const [rate, ours] = [clip.rate, encodingRate].map((one) => general(one, 6));
       const sentence = `${clip.frames} frames at a rate of ${rate}, too many for the encoding's rate of ${ours}`;
@@ -150,7 +151,8 @@ function readClips(/** @type {Tree[]} */ trees, /** @type {Skeleton} */ skeleton
   });
 }
 
-function readClip(/** @type {Tree} */ tree, /** @type {string} */ path, /** @type {Skeleton} */ skeleton) {
+/** @param {Tree} tree @param {string} path @param {Skeleton} skeleton @param {number} expressions of the avatar */
+function readClip(tree, path, skeleton, expressions) {
   const { values: rotations, shape } = unit(tree.rotations, `${path}.rotations`, [null, skeleton.names.length, 4]);
   const frames = shape[0];
   if (!frames) throw refuse(`${path}.rotations`, "a clip needs at least one frame");
@@ -168,6 +170,7 @@ function readClip(/** @type {Tree} */ tree, /** @type {string} */ path, /** @typ
     rotations,
     translation,
     translations,
+    expressions: tree.expressions && readWeights(tree.expressions, `${path}.expressions`, [frames, expressions]),
   };
 }
 

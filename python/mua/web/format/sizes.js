@@ -4,6 +4,7 @@
 import {
   MAX_CLIPS,
   MAX_DETAIL_LEVELS,
+  MAX_EXPRESSIONS,
   MAX_JOINTS,
   MAX_LAYERS,
   MAX_LEVELS,
@@ -28,6 +29,7 @@ export function checkSizes(/** @type {Tree} */ tree) {
   const most = taps.length > MOST_TAPS ? 0 : Math.min(MAX_DETAIL_LEVELS, levels - Math.max(geometry, appearance));
   check("texels.levels", tree.texels.levels.length, 0, most);
   check("clips", tree.clips.length, 0, MAX_CLIPS);
+  check("expressions.names", tree.expressions?.names.length ?? 0, 0, MAX_EXPRESSIONS);
 }
 
 /** Its memory goes with its sides, which a few bytes could claim: so many must be valid. */

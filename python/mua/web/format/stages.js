@@ -44,7 +44,7 @@ function endsOf(/** @type {ArrayBuffer} */ content, /** @type {number} */ got) {
 
 /**
  * Leave out of a tree what its first `end` bytes do not hold and nothing needs: clips, the surface, and all texels where any
- * of them are missing. A file has the mesh and its first clip in its first stage.
+ * of them are missing; expressions then move nothing. A file has the mesh and its first clip in its first stage.
  * @param {Tree} tree @param {number} end
  */
 export function leaveOut(tree, end) {
@@ -52,9 +52,10 @@ export function leaveOut(tree, end) {
   const { texels } = tree;
   delete tree.surface;
   tree.clips = /** @type {Tree[]} */ (tree.clips).filter((clip) =>
-    [clip.rotations, clip.translation, clip.translations].every(there),
+    [clip.rotations, clip.translation, clip.translations, clip.expressions].every(there),
   );
   if (!tree.clips.length) throw fault("truncated", "clips", "none is there yet");
+  if (tree.expressions) tree.expressions = partOf(tree.expressions, there);
   const held = [texels.texels, texels.triangles, texels.barycentrics, texels.listed];
   const levels = /** @type {Tree[]} */ (texels.levels);
   if (held.every(there) && levels.every(({ blocks }) => isThere({ data: blocks }, end))) return;
@@ -64,6 +65,13 @@ export function leaveOut(tree, end) {
   delete tree.texels.one_sided;
   for (const branch of [tree.geometry, tree.appearance])
     branch.static_offset = empty("F32", branch.static_offset.shape[0], 0);
+}
+
+/** Expressions as they are, or their names alone where what they move is missing. @param {Tree} expressions @param {(tensor: Tree) => boolean} there */
+function partOf({ names, ...moves }, there) {
+  if (Object.values(moves).every(there)) return { names, ...moves };
+  const starts = { ...empty("I32", names.length + 1), data: new Uint8Array(4 * (names.length + 1)) };
+  return { names, starts, vertices: empty("I32", 0), offsets: empty("F32", 0, 3) };
 }
 
 const NO_BLOCKS = { blocks: new Uint8Array() };

@@ -15,7 +15,7 @@ import { fault } from "./parser.js";
  * @property {Float32Array | undefined} scale of each row of I8
  */
 
-const MAX_BYTES = 2 ** 31 - 1;
+export const MAX_BYTES = 2 ** 31 - 1;
 /** @type {Record<string, number>} */
 export const SIZES = { F32: 4, F16: 2, I8: 1, I32: 4 };
 const HALF_MAGNITUDE = 0x7fff;

@@ -147,7 +147,7 @@ function weightsOf(motion, names, frames, rate) {
     for (const [i, column] of columns.entries()) {
       if (column < 0) continue;
       const [a, b] = [before, after].map((one) => expressions.weights[one * width + column]);
-      found[frame * names.length + i] = a + (at - before) * (b - a);
+      found[frame * names.length + i] = Math.min(Math.max(a + (at - before) * (b - a), 0), 1);
     }
   }
   return found;
