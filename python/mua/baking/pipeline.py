@@ -60,9 +60,7 @@ def _bake(settings: BakeSettings, device: torch.device, listener: Listener) -> B
     for sentence in (*character.notes, describe_texels(character, settings.student.texels), *notes, *of_face):
         listener.note(sentence)
     student_settings = settings_for(settings, character)
-    bodies = [
-        replace(clip, expressions=None) for clip in clips
-    ]  # expressions are not learnt: they follow from the mesh
+    bodies = [replace(clip, expressions=None) for clip in clips]  # a face is not learnt: it follows from the mesh
     training, held = split(bodies, settings.hold_out)
     planned = plan(training, held, frames=settings.student.frames)
     choose(clips, settings.clips)  # before hours of work
