@@ -33,6 +33,7 @@ from mua.avatar.decode import Unposed, express, pose_splats, unposed_clip_frame
 from mua.avatar.rendering import to_bytes
 from mua.baking.sources import load_character
 from mua.channels import APPEARANCE, ATTRIBUTES
+from mua.errors import InputError
 from mua.fidelity.background import background_for, over
 from mua.fidelity.canvas import opened
 from mua.fidelity.faces import AWAY, MOVES, USUAL
@@ -279,14 +280,20 @@ def report(results: Sequence[Result]) -> None:
         print(f"{way}: {met} of {len(results)} cost at most {BAR:g} dB inside the face's box")
 
 
-def load_teacher(given: argparse.Namespace, texels: int) -> FacedTeacher:
-    """The teacher of the bake, with the corrections that it kept."""
+def load_teacher(given: argparse.Namespace, rig: Rig) -> FacedTeacher:
+    """The teacher of the bake, with the corrections that it kept. Errors: InputError where its texels are others."""
     character: Character = load_character(
         given.character, uv="auto", seed=0, detail=read_detail(given.detail, uv="auto")
     )
     fit = given.recording.with_name(f"{given.recording.name.replace('recording', 'fit')}.npy")
     corrections = np.load(fit) if fit.exists() else None
-    return FacedTeacher(replace(character, clips=(), source=None), texels=texels, corrections=corrections)
+    bare = replace(character, clips=(), source=None)
+    teacher = FacedTeacher(bare, texels=rig.texels.size, corrections=corrections)
+    if rig.expressions is None:
+        raise InputError(f"{given.file}: has no expressions to measure")
+    if not np.array_equal(teacher.rig.texels.texels, rig.texels.texels):
+        raise InputError(f"--detail {' '.join(given.detail)}: lays texels out otherwise than {given.file} has them")
+    return teacher
 
 
 def main() -> None:
@@ -304,7 +311,7 @@ def main() -> None:
     avatar = read(given.file)
     clip, run_up = held_out(Recording(given.recording))
     with opened() as context:
-        studio = FaceStudio(context, avatar, load_teacher(given, avatar.rig.texels.size), given.size)
+        studio = FaceStudio(context, avatar, load_teacher(given, avatar.rig), given.size)
         frames = studio.frames(clip, run_up)
         results = measure(studio, frames, avatar, spoken(avatar, clip, given.face), given.frames)
         report(results)
