@@ -47,6 +47,7 @@ from mua.pose.descriptor import heading_of
 from mua.pose.expression_names import match_expressions
 from mua.pose.skeleton import Pose
 from mua.recording import Recording
+from mua.rig.build import build_rig
 from mua.rig.character import Character
 from mua.rig.rig import Rig
 from mua.teachers.simulated.surface import MovedSurface
@@ -285,15 +286,14 @@ def load_teacher(given: argparse.Namespace, rig: Rig) -> FacedTeacher:
     character: Character = load_character(
         given.character, uv="auto", seed=0, detail=read_detail(given.detail, uv="auto")
     )
+    if rig.expressions is None:
+        raise InputError(f"{given.file}: has no expressions to measure")
+    if not np.array_equal(build_rig(character, texels=rig.texels.size)[0].texels.texels, rig.texels.texels):
+        raise InputError(f"--detail {' '.join(given.detail)}: lays texels out otherwise than {given.file} has them")
     fit = given.recording.with_name(f"{given.recording.name.replace('recording', 'fit')}.npy")
     corrections = np.load(fit) if fit.exists() else None
     bare = replace(character, clips=(), source=None)
-    teacher = FacedTeacher(bare, texels=rig.texels.size, corrections=corrections)
-    if rig.expressions is None:
-        raise InputError(f"{given.file}: has no expressions to measure")
-    if not np.array_equal(teacher.rig.texels.texels, rig.texels.texels):
-        raise InputError(f"--detail {' '.join(given.detail)}: lays texels out otherwise than {given.file} has them")
-    return teacher
+    return FacedTeacher(bare, texels=rig.texels.size, corrections=corrections)
 
 
 def main() -> None:
