@@ -282,14 +282,19 @@ def report(results: Sequence[Result]) -> None:
 
 
 def load_teacher(given: argparse.Namespace, rig: Rig) -> FacedTeacher:
-    """The teacher of the bake, with the corrections that it kept. Errors: InputError where its texels are others."""
+    """The teacher of the bake, with the corrections that it kept. Errors: InputError where the avatar is another's."""
     character: Character = load_character(
         given.character, uv="auto", seed=0, detail=read_detail(given.detail, uv="auto")
     )
     if rig.expressions is None:
         raise InputError(f"{given.file}: has no expressions to measure")
-    if not np.array_equal(build_rig(character, texels=rig.texels.size)[0].texels.texels, rig.texels.texels):
-        raise InputError(f"--detail {' '.join(given.detail)}: lays texels out otherwise than {given.file} has them")
+    own, _ = build_rig(character, texels=rig.texels.size)
+    pairs = (own.texels.texels, rig.texels.texels), (own.mesh.faces, rig.mesh.faces)
+    if not all(np.array_equal(*pair) for pair in pairs):
+        raise InputError(
+            f"{given.file}: its texels or triangles are not those of {given.character} now, expected a bake by this "
+            f"version with --detail {' '.join(given.detail) or 'left out'}"
+        )
     fit = given.recording.with_name(f"{given.recording.name.replace('recording', 'fit')}.npy")
     corrections = np.load(fit) if fit.exists() else None
     bare = replace(character, clips=(), source=None)
