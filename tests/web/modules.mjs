@@ -177,7 +177,13 @@ function views(box) {
     eyes,
     texelOfEyes: texelPixels(0.01, box, eyes).texel,
     fewest: [[camera], eyes].map((cameras) => {
-      for (let splats = 1; ; splats++) if (splatCorners([box, around], splats, cameras) === 3) return splats;
+      let [more, fewest] = [1, 2 ** 30]; // one more than are too few, and one that is enough
+      while (more < fewest) {
+        const half = Math.floor((more + fewest) / 2);
+        if (splatCorners([box, around], half, cameras) === 3) fewest = half;
+        else more = half + 1;
+      }
+      return fewest;
     }),
   };
 }
