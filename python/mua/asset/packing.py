@@ -50,6 +50,8 @@ def _in_bytes(tensor: Tree) -> Tree:
     if tensor["type"] != "F16" or not tensor["data"].size:
         return tensor
     values = tensor["data"].view(DTYPES["F16"]).astype(np.float32)
+    if not np.isfinite(values).all():
+        return tensor
     units = _lowest_bits(values)
     for rows in sorted({math.prod(tensor["shape"][:axis].tolist()) for axis in range(len(tensor["shape"]))}):
         scale = units.reshape(rows, -1).min(axis=1)

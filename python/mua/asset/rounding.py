@@ -20,7 +20,7 @@ from mua.rig.expressions import Expressions
 
 # Steps of the static offset, measured in docs/research/storage.md; that of an offset is of the figure's height.
 STEPS = {"offset": 2.0**-16, "rotation": 2.0**-8, "scale": 2.0**-7, "opacity": 2.0**-6, "SH": 2.0**-8}
-STATIC, LL, DETAILS, MEANS, LAST, HIDDEN, MESH = 1.0, 1.0, 0.8, 1.0, 1.0, 1.0, 1.0  # times the step that follows
+STATIC, LL, DETAILS, MEANS, LAST, HIDDEN, MESH = 0.45, 0.45, 0.36, 0.45, 0.45, 0.45, 0.45  # times the step that follows
 FIGURE = 400  # pixels along a figure: errors of texels that are smaller than one average out
 POSES = 512  # random ones, by which networks are measured
 FAINT = 1 / 16  # of a layer's mean output, below which units count as if they were that large
