@@ -213,7 +213,7 @@ def test_a_handle_says_what_the_file_holds(opened: Open, small: Path) -> None:
     assert load(page) == ""
     reported = json.loads(page.evaluate("JSON.stringify({ ...avatar, clip: player.clip })"))
     frames, rate = len(avatar.clips[0]), avatar.encoding.rate
-    clips = [{"name": avatar.clips[0].name, "frames": frames, "seconds": frames / rate}]
+    clips = [{"name": avatar.clips[0].name, "frames": frames, "seconds": frames / rate, "loop": True}]
     assert (reported["name"], reported["clips"], reported["clip"]) == (avatar.name, clips, avatar.clips[0].name)
     assert reported["splats"] == len(avatar.rig.texels.texels)
 

@@ -9,7 +9,7 @@ import pytest
 from synthetic_avatar import synthetic_avatar, with_expressions, with_surface
 from web.browser import Page
 from web.engine import LEAST_PSNR, SHOWN, SPLATS, Open, desktop, load, opened, psnr, screenshot, show
-from web.test_posing import CLOCK, pose_of
+from web.test_set_pose import CLOCK, pose_of
 
 from mua.asset.avatar import Avatar
 from mua.asset.write import encode

@@ -8,8 +8,8 @@ import pytest
 from people import person
 from web.browser import Page
 from web.pages import ELEMENT
-from web.test_posing import on_person
-from web.test_retarget import animated, moving
+from web.test_page_retarget import animated, moving
+from web.test_set_pose import on_person
 from web.test_shared import EXAMPLES, THREE, Open, opened
 
 from mua.arrays import Array
