@@ -33,6 +33,10 @@ from mua.share.single import in_order
 
 BYTES = bytes(range(256)) * 4
 AUTHORITY = "127.0.0.1"
+ON_DEMAND = (  # modules that no page needs before it shows an avatar
+    *("retarget/", "worker.js", "expressing.js", "wgsl/expressions.js", "vr.js", "headset.js", "picture.js"),
+    *("anatomy.js", "surface_mesh.js", "wgsl/skeleton.js", "wgsl/surface.js"),
+)
 
 
 class Tags(HTMLParser):
@@ -112,8 +116,7 @@ def test_poster_and_page_begin_with_the_clip_asked_for(command: Commands, tmp_pa
 def test_everything_that_the_page_names_is_in_the_folder(command: Commands, avatar_file: Path, tmp_path: Path) -> None:
     share(command, avatar_file, "-o", tmp_path / "out")
     tags = Tags((tmp_path / "out" / "index.html").read_text()).found
-    early = [path for path in site.player_files() if not path.startswith("retarget/")]  # fetched for motion alone
-    modules = [path for path in early if path.endswith(".js") and path != "worker.js"]
+    modules = [path for path in site.player_files() if path.endswith(".js") and not path.startswith(ON_DEMAND)]
     assert [given["href"] for _, given in tags if given.get("rel") == "modulepreload"] == modules
     named = [value for _, given in tags for name, value in given.items() if name in ("src", "href", "poster")]
     assert len(named) == 5 + len(modules)

@@ -9,6 +9,7 @@ import { fakeGpu } from "./units/gpu.mjs";
 const { Device, Memory } = await import("../../python/mua/web/device.js");
 const { Kernel } = await import("../../python/mua/web/kernel.js");
 const { AvatarBuffers } = await import("../../python/mua/web/buffers.js");
+const { Expressing } = await import("../../python/mua/web/expressing.js");
 const { AvatarFrame } = await import("../../python/mua/web/frame.js");
 const { SplatFrame } = await import("../../python/mua/web/splats.js");
 
@@ -27,7 +28,7 @@ Kernel.prototype.dispatch = function (_, groups, buffers, constants) {
 };
 
 const memory = new Memory(new Device({ info: {} }, fakeGpu()));
-const frame = new AvatarFrame(new AvatarBuffers(memory, avatar));
+const frame = new AvatarFrame(new AvatarBuffers(memory, avatar, Expressing));
 const splats = new SplatFrame(memory, [frame]);
 const at = (index) => window(avatar.skeleton, avatar.clips[0], index, avatar.encoding);
 frame.decode("pass", at(1), 0);

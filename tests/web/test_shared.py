@@ -19,12 +19,11 @@ from web.pages import ELEMENT, LOSABLE, SENTENCE, SHADOW
 from mua.arrays import Array
 from mua.share.poster import front, opening, poster
 from mua.share.single import single_page
-from mua.share.site import ON_DEMAND, Content, Shown, player_files, player_site
+from mua.share.site import FIRST, Content, Shown, needed, player_files, player_site
 
 THREE = Path(__file__).parent / "node_modules" / "three"
 EXAMPLES = Path(__file__).parents[2] / "docs" / "examples" / "web"
-LARGEST_PLAYER = 160_000  # bytes that every page loads, compressed as a web server would
-LARGEST_RETARGETING = 40_000  # bytes that it loads beside them for motion of its own
+LARGEST_PLAYER = 150_000  # bytes that every page loads, compressed as a web server would
 PLAIN = b'<!doctype html><script type="module" src="element.js"></script><mua-avatar controls></mua-avatar>'
 FULL = "GPUDevice.prototype.popErrorScope = async () => new GPUOutOfMemoryError('full')"
 DRAWN = f"{ELEMENT}?.firstPicture > 0 && {ELEMENT}.avatars.length > 0"
@@ -186,11 +185,29 @@ def test_what_another_server_does_not_give_is_a_sentence(opened: Open, elsewhere
     page.wait(f"{SENTENCE}.includes('{said}')")
 
 
+def compressed(names: set[str]) -> int:
+    files = player_files()
+    return sum(len(gzip.compress(files[name].read_bytes())) for name in names)
+
+
 def test_the_player_is_small() -> None:
-    sizes = {name: len(gzip.compress(path.read_bytes())) for name, path in player_files().items()}
-    on_demand = sum(size for name, size in sizes.items() if name.startswith(ON_DEMAND))
-    assert sum(sizes.values()) - on_demand < LARGEST_PLAYER
-    assert on_demand < LARGEST_RETARGETING
+    others = {name for name in player_files() if not name.endswith(".js")}
+    assert compressed(needed(*FIRST, "worker.js") | others) < LARGEST_PLAYER
+
+
+@pytest.mark.parametrize(
+    ("roots", "largest"),
+    [
+        (["retarget/play.js", "retarget/rig.js"], 40_000),
+        (["vr.js"], 10_000),
+        (["anatomy.js"], 6_500),
+        (["expressing.js"], 5_500),
+        (["picture.js"], 1_000),
+    ],
+    ids=["motion", "headset", "geometry and skeleton", "expressions", "screenshot"],
+)
+def test_what_is_loaded_on_demand_is_small(roots: list[str], largest: int) -> None:
+    assert 0 < compressed(needed(*roots) - needed(*FIRST)) < largest
 
 
 def extent(alpha: Array) -> Array:

@@ -8,17 +8,15 @@ import base64
 import hashlib
 import html
 import json
-import posixpath
 import re
 from collections.abc import Mapping, Sequence
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 from mua.errors import InputError
-from mua.share.site import Shown, page, player_files
+from mua.share.site import STATIC, Shown, below, page, player_files
 
 LARGEST = 24_000_000  # bytes of avatars; a third more as text, which browsers hold twice while they read it
-STATIC = re.compile(r'^((?:import|export)\s+(?:[\w\s{},*]+\sfrom\s+)?)"(\.[^"]+)"', re.MULTILINE)
 DYNAMIC = re.compile(r'await import\("(\.[^"]+)"\)')
 WORKER = re.compile(r'new URL\("(\.[^"]+)", import\.meta\.url\)')
 BOOT = Path(__file__).with_name("single.js")
@@ -59,7 +57,7 @@ def single_page(avatars: Sequence[Path], shown: Shown, *, poster: bytes | None =
 
 def in_order(sources: Mapping[str, str]) -> list[str]:
     """Modules by path, each after those that it imports when it begins."""
-    needed = {path: [_below(path, each[2]) for each in STATIC.finditer(text)] for path, text in sources.items()}
+    needed = {path: [below(path, each[2]) for each in STATIC.finditer(text)] for path, text in sources.items()}
     try:
         return list(TopologicalSorter(needed).static_order())
     except CycleError as error:
@@ -74,14 +72,9 @@ def _modules(files: Mapping[str, Path]) -> list[tuple[str, str]]:
 
 def _rewritten(path: str, text: str) -> str:
     """A module whose static imports are `mua:` and a path, and whose dynamic imports are looked up when they run."""
-    text = STATIC.sub(lambda found: f'{found[1]}"mua:{_below(path, found[2])}"', text)
-    text = DYNAMIC.sub(lambda found: f'await import(muaModules["{_below(path, found[1])}"])', text)
-    return WORKER.sub(lambda found: f'muaModules["{_below(path, found[1])}"]', text)
-
-
-def _below(path: str, target: str) -> str:
-    """The path that a module's relative address leads to."""
-    return posixpath.normpath(posixpath.join(posixpath.dirname(path), target))
+    text = STATIC.sub(lambda found: f'{found[1]}"mua:{below(path, found[2])}"', text)
+    text = DYNAMIC.sub(lambda found: f'await import(muaModules["{below(path, found[1])}"])', text)
+    return WORKER.sub(lambda found: f'muaModules["{below(path, found[1])}"]', text)
 
 
 def _policy(boot: str, style: str) -> str:

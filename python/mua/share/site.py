@@ -1,6 +1,7 @@
 """The files of a site that plays avatars: the player's own, a page, the avatars and their image."""
 
 import html
+import posixpath
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -13,9 +14,9 @@ PAGE = "index.html"
 SERVED = (".js", ".css", ".wgsl", ".svg")  # ending of the player's files; others are for bundlers
 POSTER = "poster.png"
 SCRIPT = '<script type="module"'  # how the page's script begins
-WORKER = "worker.js"  # the root of a module graph of its own
 BRIDGE = "bridge.js"  # of pages that a program of this machine feeds
-ON_DEMAND = "retarget/"  # modules that a page needs once it loads motion
+FIRST = ("page.js", "engine.js")  # roots of what every page needs; player.js imports the engine where there is WebGPU
+STATIC = re.compile(r'^((?:import|export)\s+(?:[\w\s{},*]+\sfrom\s+)?)"(\.[^"]+)"', re.MULTILINE)
 ELEMENT = "<mua-avatar "
 UNSAFE = re.compile(r"[^\w.-]+")  # characters of a file name that some web hosts do not take
 
@@ -62,9 +63,25 @@ def page(shown: Shown, attributes: Mapping[str, str]) -> str:
 
 def _preloads() -> str:
     """Lines by which a browser fetches all modules that it needs at once, before it has read their imports."""
-    modules = [path for path in player_files() if path.endswith(".js") and path != WORKER]
-    modules = [path for path in modules if not path.startswith(ON_DEMAND)]
-    return "".join(f'<link rel="modulepreload" href="{path}">\n' for path in modules)
+    return "".join(f'<link rel="modulepreload" href="{path}">\n' for path in sorted(needed(*FIRST)))
+
+
+def needed(*roots: str) -> set[str]:
+    """The player's modules that these import, and they themselves, by path; without what is imported on demand."""
+    found: set[str] = set()
+    left = list(roots)
+    while left:
+        path = left.pop()
+        if path not in found:
+            found.add(path)
+            text = (PLAYER / path).read_text(encoding="utf-8")
+            left += [below(path, each[2]) for each in STATIC.finditer(text)]
+    return found
+
+
+def below(path: str, target: str) -> str:
+    """The path that a module's relative address leads to."""
+    return posixpath.normpath(posixpath.join(posixpath.dirname(path), target))
 
 
 def title_of(avatars: Sequence[Path]) -> str:

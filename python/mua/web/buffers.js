@@ -1,7 +1,7 @@
 // An avatar's tensors on the device, in the type in which the file stores them. Reference: python/mua/player/buffers.py.
 
 import { coarserTexture, textureOf } from "./coarser.js";
-import { byVertex, reachOf, texelTiles, texelWords, upsamplingTaps } from "./prepare.js";
+import { texelTiles, texelWords, upsamplingTaps } from "./prepare.js";
 
 /** @typedef {import("./device.js").Memory} Memory */
 /** @typedef {import("./format/read.js").Avatar} Avatar */
@@ -19,8 +19,7 @@ import { byVertex, reachOf, texelTiles, texelWords, upsamplingTaps } from "./pre
  * @property {number} tileCount
  * @property {GPUBuffer} tiles
  * @property {GPUBuffer} tileRows
- * @property {GPUBuffer} reached [K, 2] texels that expressions may bend, and their triangle's place
- * @property {number} reachedCount
+ * @property {{buffer: GPUBuffer, count: number} | null} reached texels that expressions may bend
  * @property {BranchLevel} geometry
  * @property {BranchLevel} appearance
  */
@@ -34,7 +33,8 @@ export const wholeWords = (/** @type {ArrayLike<number>} */ taps) =>
 
 /** Everything of a file that does not change from frame to frame. */
 export class AvatarBuffers {
-  constructor(/** @type {Memory} */ memory, /** @type {Avatar} */ avatar) {
+  /** @param {Memory} memory @param {Avatar} avatar @param {typeof import("./expressing.js").Expressing} [Expressing] of an avatar with expressions */
+  constructor(memory, avatar, Expressing) {
     const { coarse, wavelet, template, texels } = avatar;
     this.memory = memory;
     this.avatar = avatar;
@@ -49,28 +49,12 @@ export class AvatarBuffers {
     this.faces = memory.buffer(template.faces, "template.faces");
     this.skinIndices = memory.buffer(template.skinIndices, "template.skin_indices");
     this.skinWeights = memory.buffer(template.skinWeights, "template.skin_weights");
-    this.targets = byVertex(avatar.targets);
-    this.expressions = this.uploadTargets();
+    this.expressing = Expressing ? new Expressing(memory, avatar, this.faces) : null;
     const statics = { geometry: avatar.geometry.staticOffset, appearance: avatar.appearance.staticOffset };
     /** @type {LevelBuffers[]} */
     this.levels = [this.levelOf(texels, statics, 0)];
     /** @type {import("./coarser.js").Texture | null} */
     this.coarser = null; // what the coarsest level so far was made of
-  }
-
-  /** What moves each vertex that any expression moves, and the triangles in their reach. */
-  uploadTargets() {
-    const { memory, avatar, targets } = this;
-    const { triangles } = reachOf(targets.vertices, avatar.template.faces, new Int32Array());
-    return {
-      vertices: memory.buffer(targets.vertices, "expressions.vertices"),
-      starts: memory.buffer(targets.starts, "expressions.starts"),
-      expressions: memory.buffer(targets.expressions, "expressions.vertices"),
-      offsets: memory.buffer(targets.offsets, "expressions.offsets"),
-      vertexCount: targets.vertices.length,
-      triangles: memory.buffer(triangles, "expressions.vertices"),
-      triangleCount: triangles.length,
-    };
   }
 
   /** A level of detail, at most the coarsest of the avatar; made when it is first asked for. @returns {LevelBuffers} */
@@ -89,7 +73,6 @@ export class AvatarBuffers {
     /** @type {number} */ number,
   ) {
     const { tiles, rows } = texelTiles(texels);
-    const reached = reachOf(this.targets.vertices, this.avatar.template.faces, texels.triangles).texels;
     return {
       number,
       size: texels.size,
@@ -98,8 +81,7 @@ export class AvatarBuffers {
       tileCount: tiles.length,
       tiles: this.memory.buffer(tiles, "texels.texels"),
       tileRows: this.memory.buffer(rows, "texels.texels"),
-      reached: this.memory.buffer(reached, "expressions.vertices"),
-      reachedCount: reached.length / 2,
+      reached: this.expressing?.reached(texels.triangles) ?? null,
       geometry: this.branchLevel("geometry", statics.geometry, number),
       appearance: this.branchLevel("appearance", statics.appearance, number),
     };

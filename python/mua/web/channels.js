@@ -5,7 +5,6 @@ import { wholeWords } from "./buffers.js";
 import { kernelsOf, kernelWithRoom } from "./kernel.js";
 import { upsamplingTaps } from "./prepare.js";
 import { BlendDetail, BlendLl } from "./wgsl/blend_subbands.js";
-import { BendTexels, BendTriangles, SumTargets } from "./wgsl/expressions.js";
 import { InverseDwt, UpsampleTexels } from "./wgsl/inverse_dwt.js";
 import { MlpMatmul, MlpMatmulTransposed } from "./wgsl/mlp_matmul.js";
 
@@ -33,13 +32,10 @@ const LL_PAIRS = 64; // texels that share a word, of a group of BlendLl
 const DETAIL_TILE = 24; // texels along a side of a group of BlendDetail
 const TEXEL_TILE = 16; // texels along a side of a group of UpsampleTexels
 const COARSE_TILE = 16; // samples along a side that a group of InverseDwt doubles
-const EXPRESSED = 64; // vertices, triangles or texels of a group of the kernels of expressions
-const BEND = 64; // bytes of a bent triangle
 const [ROWS, BATCH] = [6, 4]; // of texel_channels, and channels of each
 export const TEXEL_CHANNELS = 2 * ROWS * BATCH; // bytes
 export const PARTS = 4; // of a decode, which take about as long each
 export const KERNELS = { BlendDetail, MlpMatmul, MlpMatmulTransposed, BlendLl };
-const EXPRESSING = { SumTargets, BendTriangles, BendTexels }; // of avatars with expressions
 
 /** Groups of `size` that hold `count`. */
 export const groups = (/** @type {number} */ count, /** @type {number} */ size) => Math.ceil(count / size);
@@ -60,15 +56,11 @@ export function upsampler(device, { factor, reach }) {
 }
 
 /** The kernels that depend on the avatar, for its finest level. @param {Device} device @param {Avatar} avatar */
-export function kernelsFor(device, { wavelet, geometry, appearance, expressions }) {
+export function kernelsFor(device, { wavelet, geometry, appearance }) {
   const upsamplings = [geometry, appearance].map(({ details }) =>
     upsamplingTaps(wavelet.recLo, wavelet.levels - details.length),
   );
-  return [
-    synthesis(device, wholeWords(wavelet.recLo).length),
-    ...upsamplings.map((one) => upsampler(device, one)),
-    ...(expressions.length ? Object.values(kernelsOf(device, EXPRESSING)) : []),
-  ];
+  return [synthesis(device, wholeWords(wavelet.recLo).length), ...upsamplings.map((one) => upsampler(device, one))];
 }
 
 /** The buffers between the kernels of a decode, sized once: parts read what the one before left in them. */
@@ -88,8 +80,6 @@ export class ChannelDecoder {
     );
     this.activations = [0, 1].map((i) => memory.buffer(activations, `activations ${i}`));
     this.details = memory.buffer(Math.max(0, ...details), "details");
-    this.moved = memory.buffer(FLOAT * 3 * avatar.coarse.vertices, "moved"); // [V, 3], 0 where none moves a vertex
-    this.bends = memory.buffer(BEND * buffers.expressions.triangleCount, "bends");
     // the finest texture with details, and its ll
     this.textures = [0, 1].map((i) => memory.buffer(Math.max(...branches.map((b) => texture(b, i))), `texture ${i}`));
   }
@@ -105,7 +95,7 @@ export class ChannelDecoder {
     }
     if (part === 2) this.blend(pass, appearance, channels);
     if (part === 3) this.texels(pass, appearance, level.appearance, channels, ROWS / 2);
-    if (part === PARTS - 1 && channels.expressive) this.express(pass, channels);
+    if (part === PARTS - 1 && channels.expressive) this.buffers.expressing?.dispatch(pass, channels);
   }
 
   /** Output of the MLP for the components; the next MLP overwrites it. */
@@ -143,32 +133,6 @@ export class ChannelDecoder {
     const { coarseMlp, mesh } = this.buffers;
     const x = this.mlp(pass, coarseMlp, channels.components);
     this.layer(pass, this.kernels.MlpMatmulTransposed, mesh, { x, y: channels.mesh }, MESH_COLUMNS, false);
-  }
-
-  /** Move the vertices of expressions, and bend the texels in reach. @param {GPUComputePassEncoder} pass @param {ChannelSet} channels */
-  express(pass, { level, weights, mesh, texelChannels }) {
-    const { memory, expressions: targets, faces } = this.buffers;
-    const { moved, bends } = this;
-    const { vertices, starts, expressions, offsets, vertexCount, triangles, triangleCount } = targets;
-    const kernels = kernelsOf(memory.device, EXPRESSING);
-    kernels.SumTargets.dispatch(
-      pass,
-      [groups(vertexCount, EXPRESSED), 1, 1],
-      { vertices, starts, expressions, offsets, weights, moved, mesh },
-      { vertex_count: vertexCount },
-    );
-    kernels.BendTriangles.dispatch(
-      pass,
-      [groups(triangleCount, EXPRESSED), 1, 1],
-      { triangles, faces, moved, mesh, bends },
-      { triangle_count: triangleCount },
-    );
-    kernels.BendTexels.dispatch(
-      pass,
-      [groups(level.reachedCount, EXPRESSED), 1, 1],
-      { reached: level.reached, bends, texel_channels: texelChannels },
-      { texel_count: level.reachedCount, splat_count: level.splatCount },
-    );
   }
 
   /** Coefficients, LL, and level by level up to the finest details. @param {GPUComputePassEncoder} pass @param {Branch} branch @param {ChannelSet} channels */

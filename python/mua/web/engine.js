@@ -1,59 +1,42 @@
-// A player: its avatars and what is looked at, the loop that draws them, and what it does when the device is lost.
+// A player: what is looked at, the loop that draws its avatars, and what it does when the device is lost.
 
+import { Avatars } from "./avatars.js";
 import { camerasOf, FOV, framing } from "./camera.js";
 import { AvatarError } from "./error.js";
-import { clipsOf, described, handleOf } from "./handle.js";
-import { LivePose } from "./live.js";
+import { described, handleOf } from "./handle.js";
 import { load } from "./load.js";
+import { fetchAnatomy, isThereFor } from "./overlays.js";
 import { boxAround, gone, groundOf } from "./placement.js";
-import { Playback } from "./playback.js";
-import { poseFrom, weighted, weightsFrom } from "./pose.js";
 import { ProgressiveLoad } from "./progressive.js";
-import { Renderer } from "./renderer.js";
-import { VR } from "./vr.js";
+import { AWAY, Renderer } from "./renderer.js";
+import { offersVR } from "./webxr.js";
 
+/** @typedef {import("./avatars.js").Entry} Entry */
 /** @typedef {import("./player.js").AvatarHandle} AvatarHandle */
 /** @typedef {import("./player.js").PlayerOptions} PlayerOptions */
 /** @typedef {import("./format/read.js").Avatar} Avatar */
-/** @typedef {import("./clip.js").Clip} Clip */
-/**
- * @typedef {object} Entry
- * @property {Avatar} avatar
- * @property {AvatarHandle} handle
- * @property {import("./renderer.js").Slot} slot
- * @property {Map<string, number>} grounds by what it plays
- * @property {import("./skeleton.js").Pose | null} pose that the page has set
- * @property {LivePose | null} live and what is decoded of it
- * @property {boolean} fresh whether it has set something since
- * @property {Float32Array | null} weights of expressions that the page has set
- * @property {Float32Array | null} taken those of them that pictures show
- * @property {number} since when, milliseconds
- * @property {number} changes of these and of clips, which tell decodes apart
- * @property {Clip[]} added by the page
- * @property {number} asked clips so far
- */
 
 const STUMBLE = 2000; // milliseconds; a device that is lost again so soon is given up
 const TWICE = "The graphics device was lost twice at once; reload the page to try again.";
-const AWAY = "The graphics device is away; try again in a moment.";
 
-export class Engine {
+/** Draws its avatars. */
+export class Engine extends Avatars {
   /** @returns {Promise<Engine>} */
   static async create(/** @type {HTMLCanvasElement} */ canvas, /** @type {PlayerOptions} */ options) {
     const engine = new Engine(canvas, options);
     engine.renderer = await engine.opened();
+    void engine.awaitHeadset().catch(() => {}); // entering says what is wrong
     return engine;
   }
 
   constructor(/** @type {HTMLCanvasElement} */ canvas, /** @type {PlayerOptions} */ options) {
+    super();
     this.canvas = canvas;
     this.options = options;
     /** @type {Renderer | null} */
     this.renderer = null; // while a lost device is being replaced
     /** @type {WeakSet<Renderer>} */
     this.lost = new WeakSet(); // those whose device was lost before they drew
-    /** @type {Entry[]} */
-    this.entries = [];
     /** @type {import("./player.js").CameraState} */
     this.camera = { azimuth: 0, elevation: 0, distance: 3.5, target: [0, 1, 0], fov: FOV };
     /** @type {import("./player.js").Show} */
@@ -66,21 +49,14 @@ export class Engine {
     this.frameBudget = null;
     this.follow = false;
     this.stereo = false;
-    this.playback = new Playback(
-      () => this.clips,
-      (type) => this.entries.length && this.onplayback?.({ type, clip: this.clip, time: this.time }),
-    );
-    /** @type {((event: import("./player.js").PlaybackEvent) => void) | null} */
-    this.onplayback = null;
-    /** @type {(() => void) | null} */
-    this.onchange = null;
     /** @type {((error: AvatarError) => void) | null} */
     this.onerror = null;
     this.request = 0; // of the next picture; 0 where the loop stands
     this.drawn = ""; // what the canvas shows
     /** @type {Promise<void> | null} */
-    this.early = null; // a picture that is being drawn while kernels are still being compiled
-    this.room = new VR(this);
+    this.early = null; // a picture that is being drawn while kernels are still being compiled, or what is fetched for it
+    /** @type {import("./vr.js").VR | null} */
+    this.room = null; // once a headset is asked for
     /** @type {((vr: boolean) => void) | null} */
     this.onvr = null;
     this.disposed = false;
@@ -182,81 +158,9 @@ export class Engine {
     return { avatar, slot, grounds: new Map(), handle: handleOf(avatar, this), ...posed, ...expressed };
   }
 
-  /** @type {import("./handle.js").Asks["setPose"]} */
-  setPose(handle, given) {
-    const entry = this.entryOf(handle);
-    if (!entry) return;
-    entry.pose = given && poseFrom(entry.avatar, given);
-    if (!given) entry.live = null;
-    entry.fresh = true;
-    this.onchange?.();
-  }
-
-  /** @type {import("./handle.js").Asks["setExpressions"]} */
-  setExpressions(handle, given) {
-    const entry = this.entryOf(handle);
-    if (!entry) return;
-    const weights = given && weightsFrom(entry.avatar.expressions, entry.weights, given);
-    if (String(weights) === String(entry.weights)) return;
-    entry.weights = weights;
-    entry.fresh = true;
-    this.onchange?.();
-  }
-
-  /** @type {import("./handle.js").Asks["playClip"]} */
-  async playClip(handle, source, options) {
-    const { playClip } = await import("./retarget/play.js");
-    return playClip(this, handle, source, options);
-  }
-
-  /** Let an avatar have the clips that a page has loaded, in place of its own of their names. */
-  addClips(/** @type {Entry} */ { avatar, handle, added, grounds }) {
-    const others = avatar.clips.filter((clip) => !added.some(({ name }) => name === clip.name));
-    avatar.clips = [...others, ...added];
-    handle.clips = clipsOf(avatar);
-    grounds.clear();
-  }
-
-  /** @type {import("./handle.js").Asks["retarget"]} */
-  async retarget(handle, rig, options) {
-    const { follow } = await import("./retarget/rig.js");
-    return follow(this.entryOf(handle)?.avatar, rig, options);
-  }
-
-  /** Take the poses and weights that pages have set, as of a time of the display or the headset, milliseconds. */
-  takePoses(now = performance.now(), exact = this.exact) {
-    for (const entry of this.entries) {
-      this.takeWeights(entry, now, exact);
-      entry.fresh = false;
-      if (!entry.pose) continue;
-      const pose = weighted(entry.pose, entry.weights);
-      if (entry.live) entry.live.sample(pose, now / 1000);
-      else entry.live = new LivePose(entry.avatar.encoding, pose, now / 1000);
-    }
-  }
-
-  /** Take the weights of an avatar: each change is a decode, so that one after the other comes at most once in its frames. */
-  takeWeights(/** @type {Entry} */ entry, /** @type {number} */ now, /** @type {boolean} */ exact) {
-    const early = !exact && Math.abs(now - entry.since) * entry.avatar.encoding.rate < 1000;
-    if (entry.weights === entry.taken || early) return;
-    entry.taken = entry.weights;
-    entry.since = now;
-    entry.changes += 1;
-  }
-
-  /** Whether pictures change by themselves. */
-  get moving() {
-    return this.playing || this.entries.some((entry) => entry.weights !== entry.taken || posing(entry));
-  }
-
   /** Whether a picture shows exactly what is asked for, else the next frame is decoded ahead. */
   get exact() {
     return this.show.geometry || !(this.request || this.vr);
-  }
-
-  /** @param {AvatarHandle} handle @returns {Entry | undefined} */
-  entryOf(handle) {
-    return this.entries.find((one) => one.handle === handle);
   }
 
   /** How far outside of training the pose is that is shown of an avatar, 0 to 1. */
@@ -267,55 +171,8 @@ export class Engine {
   remove(/** @type {AvatarHandle} */ handle) {
     const entry = this.entryOf(handle);
     if (!entry) return;
-    this.entries = this.entries.filter((one) => one !== entry);
+    super.remove(handle);
     this.renderer?.remove(entry.slot);
-  }
-
-  get avatars() {
-    return this.entries.map((entry) => entry.handle);
-  }
-
-  /** Those of the first avatar, and what pages have added to others. */
-  get clips() {
-    const [first, ...others] = this.entries;
-    const found = [...(first?.handle.clips ?? [])];
-    for (const { handle, added } of others)
-      for (const clip of handle.clips)
-        if (added.some(({ name }) => name === clip.name) && !found.some(({ name }) => name === clip.name))
-          found.push(clip);
-    return found;
-  }
-
-  get clip() {
-    return this.playback.clip;
-  }
-
-  set clip(name) {
-    this.playback.clip = name;
-  }
-
-  get time() {
-    return this.playback.time;
-  }
-
-  set time(seconds) {
-    this.playback.time = seconds;
-  }
-
-  get playing() {
-    return this.playback.playing;
-  }
-
-  set playing(playing) {
-    this.playback.playing = playing;
-  }
-
-  get speed() {
-    return this.playback.speed;
-  }
-
-  set speed(speed) {
-    this.playback.speed = speed;
   }
 
   get milliseconds() {
@@ -383,6 +240,7 @@ export class Engine {
 
   async draw() {
     while (this.early) await this.early;
+    if (!isThereFor(this.show)) await this.fetchShown();
     this.takePoses();
     if (this.renderer?.ready) this.drawNow();
     else await this.drawEarly();
@@ -402,7 +260,20 @@ export class Engine {
     await this.early;
   }
 
+  /** Fetch what draws all that is shown; where it does not come, that is shown no more. */
+  async fetchShown() {
+    const missing = (/** @type {unknown} */ error) => {
+      Object.assign(this.show, { geometry: false, skeleton: false });
+      this.tell(asAvatarError(error, "Geometry and skeleton cannot be shown"));
+    };
+    this.early = fetchAnatomy()
+      .catch(missing)
+      .finally(() => (this.early = null));
+    await this.early;
+  }
+
   async screenshot() {
+    if (!isThereFor(this.show)) await this.fetchShown();
     await this.renderer?.compile();
     if (!this.renderer) throw new AvatarError(AWAY);
     this.takePoses(performance.now(), true);
@@ -434,6 +305,7 @@ export class Engine {
     });
     const wanted = JSON.stringify([this.look, this.screen, frames]);
     if (!this.renderer || this.early) return;
+    if (!isThereFor(this.show)) return void this.fetchShown();
     try {
       if (wanted !== this.drawn && this.renderer.ready) this.drawNow();
       else if (wanted !== this.drawn) this.drawEarly().catch((error) => this.fail(error));
@@ -451,15 +323,22 @@ export class Engine {
   }
 
   get vr() {
-    return this.room.headset !== null;
+    return Boolean(this.room?.headset);
+  }
+
+  /** Fetch what shows avatars in a headset where there is one: the browser may forget a click that waits for the network. */
+  async awaitHeadset() {
+    if (await offersVR()) await import("./vr.js");
   }
 
   async enterVR() {
+    const { VR } = await import("./vr.js");
+    this.room ??= new VR(this);
     await this.room.enter();
   }
 
   leaveVR() {
-    this.room.leave();
+    this.room?.leave();
   }
 
   dispose() {
@@ -471,11 +350,6 @@ export class Engine {
     this.renderer?.destroy();
     this.renderer = null;
   }
-}
-
-/** Whether the window of poses that a page sets still changes. */
-function posing(/** @type {Entry} */ { pose, live, fresh }) {
-  return pose !== null && (fresh || !live?.settled);
 }
 
 function asAvatarError(/** @type {unknown} */ error, /** @type {string} */ what) {

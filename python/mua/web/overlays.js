@@ -1,13 +1,10 @@
-// What is shown beside the splats: detailed geometry, template, skeleton, cast shadow. Reference:
+// What is shown beside the splats: template and cast shadow, and the anatomy once it is asked for. Reference:
 // python/mua/player/overlays.py.
 
 import { frameBox, margin } from "./bounds.js";
 import { framesAt, sample } from "./clip.js";
 import { Pipeline } from "./kernel.js";
-import { surfaceMesh } from "./surface.js";
 import { GroundFrag, GroundVert, ShadowFrag, ShadowVert } from "./wgsl/shadow.js";
-import { StrokeFrag, StrokeVert } from "./wgsl/skeleton.js";
-import { SurfaceFrag, SurfaceVert } from "./wgsl/surface.js";
 import { TemplateFrag, TemplateVert } from "./wgsl/template.js";
 
 /** @typedef {import("./device.js").Device} Device */
@@ -15,13 +12,9 @@ import { TemplateFrag, TemplateVert } from "./wgsl/template.js";
 /** @typedef {import("./camera.js").Camera} Camera */
 /** @typedef {import("./frame.js").AvatarFrame} AvatarFrame */
 /** @typedef {{buffer: GPUBuffer, count: number}} Indices */
+/** @typedef {{color: GPUTextureFormat, depth: GPUTextureFormat}} Formats of what is drawn on */
 
-const GEOMETRY_COLOR = [0.8, 0.78, 0.75, 1]; // sRGB
-const TEMPLATE_COLOR = [0.62, 0.72, 0.84, 1];
-const BONE_COLOR = [0.98, 0.62, 0.12, 1];
-const JOINT_COLOR = [1, 0.97, 0.9, 1];
-const OUTLINE_COLOR = [0.12, 0.1, 0.08, 1];
-const [BONE_WIDTH, JOINT_WIDTH, OUTLINE] = [2.5, 5, 1.5]; // pixels
+const TEMPLATE_COLOR = [0.62, 0.72, 0.84, 1]; // sRGB
 const LIGHT = [-0.35, -1, -0.45]; // from above, the character's left and front
 const DARKNESS = 0.45; // of the ground in full shadow
 const MASK_SIZE = 128; // samples along the shadow's square: its edge is as soft as two of them
@@ -30,59 +23,52 @@ const GROUND_FRAMES = 32; // of a clip, in which the lowest point is sought
 const BELOW_GROUND = 0.1; // of these that may reach below it
 const MARGIN = 0.06; // of its size round the shadow
 
-/** The pipelines of all overlays for targets of one format. */
-function pipelines(
-  /** @type {Device} */ device,
-  /** @type {GPUTextureFormat} */ color,
-  /** @type {GPUTextureFormat} */ depth,
-) {
-  const opaque = { color, depth, write: true };
+/** @type {typeof import("./anatomy.js") | null} */
+let fetched = null;
+
+/** Whether all is there that draws these. */
+export const isThereFor = (/** @type {import("./player.js").Show} */ { geometry, skeleton }) =>
+  fetched !== null || !(geometry || skeleton);
+
+/** Fetch what draws geometry and skeletons, of all avatars of the page. */
+export async function fetchAnatomy() {
+  fetched = await import("./anatomy.js");
+}
+
+/** The pipelines of all overlays for targets of these formats. */
+function pipelines(/** @type {Device} */ device, /** @type {Formats} */ { color, depth }) {
   const strip = /** @type {GPUPrimitiveTopology} */ ("triangle-strip");
   return {
-    surface: new Pipeline(device, SurfaceVert, SurfaceFrag, opaque),
-    template: new Pipeline(device, TemplateVert, TemplateFrag, opaque),
+    template: new Pipeline(device, TemplateVert, TemplateFrag, { color, depth, write: true }),
     shadow: new Pipeline(device, ShadowVert, ShadowFrag, { color: "r8unorm" }),
     ground: new Pipeline(device, GroundVert, GroundFrag, { color, depth, blend: true, topology: strip }),
-    stroke: new Pipeline(device, StrokeVert, StrokeFrag, { color, depth, blend: true, always: true }),
   };
 }
 
 /** Draws around the splats of one avatar. */
 export class Overlays {
-  constructor(
-    /** @type {Memory} */ memory,
-    /** @type {AvatarFrame} */ frame,
-    /** @type {{color: GPUTextureFormat, depth: GPUTextureFormat}} */ { color, depth },
-  ) {
+  /** @type {import("./anatomy.js").Anatomy | null} */
+  #anatomy = null;
+
+  /** @param {Memory} memory @param {AvatarFrame} frame @param {Formats} formats */
+  constructor(memory, frame, formats) {
     const { avatar } = frame.buffers;
     const { device } = memory;
     this.memory = memory;
     this.frame = frame;
-    this.avatar = avatar;
-    this.pipelines = device.once("overlays", () => pipelines(device, color, depth));
+    this.formats = formats;
+    this.pipelines = device.once("overlays", () => pipelines(device, formats));
     this.bare = avatar.texels.texels.length === 0; // without splats: its template is shown in their place
-    this.template = this.indices(avatar.template.faces, "template");
-    this.joints = memory.buffer(16 * avatar.skeleton.names.length, "joints");
-    this.strokes = strokes(memory, avatar.skeleton.parents);
+    this.template = indices(memory, avatar.template.faces, "template");
     this.mask = memory.buffer(MASK_SIZE * MASK_ROW, "mask");
     this.maskTexture = memory.texture([MASK_SIZE, MASK_SIZE], "r8unorm", GPUTextureUsage.COPY_SRC);
     this.area = [0, 0, 1, 0];
-    /** @type {{rings: Record<string, GPUBuffer>, indices: Indices} | null} */
-    this.surface = null; // made when it is first shown
-  }
-
-  indices(/** @type {ArrayBufferView & {length: number}} */ triangles, /** @type {string} */ label) {
-    return { buffer: this.memory.buffer(triangles, label, GPUBufferUsage.INDEX), count: triangles.length };
   }
 
   /** Follow the pose that the frame decoded; `ground` is the height on which the shadow falls, metres. */
   pose(/** @type {number} */ ground) {
-    const { places, bounds } = this.frame;
-    const joints = new Float32Array((places.length / 3) * 4).fill(1);
-    for (let joint = 0; 3 * joint < places.length; joint++)
-      joints.set(places.subarray(3 * joint, 3 * joint + 3), 4 * joint);
-    this.memory.device.write(this.joints, joints);
-    this.area = shadowArea(bounds, ground);
+    this.#anatomy?.pose();
+    this.area = shadowArea(this.frame.bounds, ground);
   }
 
   /** Draw the posed template along the light on to the ground, into the mask that `drawGround` reads. */
@@ -113,22 +99,7 @@ export class Overlays {
 
   /** Draw the texels as a lit mesh, where the file holds their triangles. @param {GPURenderPassEncoder} pass @param {Camera} camera @param {GPUBuffer} splats @param {number} firstSplat */
   drawGeometry(pass, camera, splats, firstSplat) {
-    this.surface ??= this.makeSurface();
-    if (!this.surface) return;
-    const constants = { ...lit(camera, GEOMETRY_COLOR), first_splat: firstSplat };
-    this.pipelines.surface.bind(pass, { splats, ...this.surface.rings }, constants);
-    drawIndexed(pass, this.surface.indices);
-  }
-
-  makeSurface() {
-    const { surface, texels } = this.avatar;
-    if (!surface) return null;
-    const { triangles, ringStarts, ring } = surfaceMesh(texels, surface);
-    const rings = {
-      ring_starts: this.memory.buffer(ringStarts, "ring_starts"),
-      ring: this.memory.buffer(ring, "ring"),
-    };
-    return { rings, indices: this.indices(triangles, "surface") };
+    this.anatomy?.drawGeometry(pass, camera, splats, firstSplat);
   }
 
   /** Draw the posed template with flat shading. */
@@ -138,41 +109,26 @@ export class Overlays {
   }
 
   /** Draw bones and joints over all that is there. */
-  drawSkeleton(
-    /** @type {GPURenderPassEncoder} */ pass,
-    /** @type {Camera} */ { viewProjection: view_projection, screen },
-  ) {
-    const { bones, dots } = this.strokes;
-    const layers = /** @type {const} */ ([
-      [bones, BONE_WIDTH + 2 * OUTLINE, OUTLINE_COLOR],
-      [bones, BONE_WIDTH, BONE_COLOR],
-      [dots, JOINT_WIDTH + 2 * OUTLINE, OUTLINE_COLOR],
-      [dots, JOINT_WIDTH, JOINT_COLOR],
-    ]);
-    for (const [strokes, width, color] of layers) {
-      const buffers = { joints: this.joints, strokes: strokes.buffer };
-      this.pipelines.stroke.bind(pass, buffers, { view_projection, screen, width, color });
-      pass.draw(6 * strokes.count);
-    }
+  drawSkeleton(/** @type {GPURenderPassEncoder} */ pass, /** @type {Camera} */ camera) {
+    this.anatomy?.drawSkeleton(pass, camera);
+  }
+
+  get anatomy() {
+    if (fetched) this.#anatomy ??= new fetched.Anatomy(this.memory, this.frame, this.formats);
+    return this.#anatomy;
   }
 }
 
-/** Pairs of joints between which strokes are drawn: bones, and dots, which name one joint twice. */
-function strokes(/** @type {Memory} */ memory, /** @type {Int32Array} */ parents) {
-  const bones = Array.from(parents).flatMap((parent, joint) => (parent < 0 ? [] : [joint, parent]));
-  const dots = Array.from(parents).flatMap((_, joint) => [joint, joint]);
-  const made = (/** @type {number[]} */ pairs, /** @type {string} */ label) => ({
-    buffer: memory.buffer(Uint32Array.from(pairs), label),
-    count: pairs.length / 2,
-  });
-  return { bones: made(bones, "bones"), dots: made(dots, "dots") };
+/** @param {Memory} memory @param {ArrayBufferView & {length: number}} triangles @param {string} label @returns {Indices} */
+export function indices(memory, triangles, label) {
+  return { buffer: memory.buffer(triangles, label, GPUBufferUsage.INDEX), count: triangles.length };
 }
 
-function lit(/** @type {Camera} */ { viewProjection, position }, /** @type {number[]} */ color) {
+export function lit(/** @type {Camera} */ { viewProjection, position }, /** @type {number[]} */ color) {
   return { view_projection: viewProjection, camera: [...position, 1], color };
 }
 
-function drawIndexed(/** @type {GPURenderPassEncoder} */ pass, /** @type {Indices} */ { buffer, count }) {
+export function drawIndexed(/** @type {GPURenderPassEncoder} */ pass, /** @type {Indices} */ { buffer, count }) {
   pass.setIndexBuffer(buffer, "uint32");
   pass.drawIndexed(count);
 }

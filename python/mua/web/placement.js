@@ -5,7 +5,7 @@ import { groundHeight } from "./overlays.js";
 import { stillClip } from "./playback.js";
 import { world } from "./skeleton.js";
 
-/** @typedef {import("./engine.js").Entry} Entry */
+/** @typedef {import("./avatars.js").Entry} Entry */
 /** @typedef {import("./playback.js").Playback} Playback */
 /** @typedef {import("./format/read.js").Avatar} Avatar */
 

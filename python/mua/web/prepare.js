@@ -1,5 +1,5 @@
-// What the kernels read of a file that it does not hold in that form. References: python/mua/kernels/inverse_dwt.py,
-// splat_project.py and expressions.py.
+// What the kernels read of a file that it does not hold in that form. References: python/mua/kernels/inverse_dwt.py and
+// splat_project.py.
 
 const TILE = 16; // texels along a side
 const LARGEST_BARYCENTRIC = 65535;
@@ -104,41 +104,4 @@ export function centreBarycentrics({ uv, uvFaces }, size, texels, triangles) {
     found[2 * e + 1] = Math.min(Math.max(two / whole, 0), 1 - found[2 * e]);
   }
   return found;
-}
-
-/**
- * The entries of expressions in the order in which a thread for each vertex that they move reads them: starts[m] to
- * starts[m + 1] - 1 move vertices[m], both ascending. @param {import("./format/expressions.js").Targets} targets
- */
-export function byVertex({ starts, vertices, offsets }) {
-  const next = new Uint32Array(vertices.reduce((most, vertex) => Math.max(most, vertex), -1) + 2);
-  for (const vertex of vertices) next[vertex + 1]++;
-  for (let vertex = 1; vertex < next.length; vertex++) next[vertex] += next[vertex - 1];
-  const moved = Uint32Array.from(next.keys()).filter((vertex) => next[vertex] < next[vertex + 1]);
-  const found = {
-    vertices: moved,
-    starts: Uint32Array.from([...moved, next.length - 1], (vertex) => next[vertex]),
-    expressions: new Uint32Array(vertices.length),
-    offsets: new Float32Array(offsets.length),
-  };
-  for (let expression = 0; expression < starts.length - 1; expression++)
-    for (let entry = starts[expression]; entry < starts[expression + 1]; entry++) {
-      const place = next[vertices[entry]]++;
-      found.expressions[place] = expression;
-      found.offsets.set(offsets.subarray(3 * entry, 3 * entry + 3), 3 * place);
-    }
-  return found;
-}
-
-/** The triangles with a corner among the vertices, and the texels on them with the place [K, 2] of their triangle among these. @param {Uint32Array} vertices @param {Int32Array} faces @param {Int32Array} triangles of texels */
-export function reachOf(vertices, faces, triangles) {
-  const moves = new Set(vertices);
-  const places = new Int32Array(faces.length / 3).fill(-1);
-  /** @type {number[][]} */
-  const [held, texels] = [[], []];
-  for (let face = 0; face < places.length; face++)
-    if (moves.has(faces[3 * face]) || moves.has(faces[3 * face + 1]) || moves.has(faces[3 * face + 2]))
-      places[face] = held.push(face) - 1;
-  triangles.forEach((triangle, texel) => places[triangle] >= 0 && texels.push(texel, places[triangle]));
-  return { triangles: Uint32Array.from(held), texels: Uint32Array.from(texels) };
 }

@@ -3,7 +3,7 @@
 import { AvatarError } from "./error.js";
 
 /** @typedef {import("./format/read.js").Avatar} Avatar */
-/** @typedef {import("./engine.js").Entry} Entry */
+/** @typedef {import("./avatars.js").Entry} Entry */
 /** @typedef {import("./player.js").AvatarHandle} AvatarHandle */
 
 export class ProgressiveLoad {

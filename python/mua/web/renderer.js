@@ -14,7 +14,6 @@ import { MILLISECONDS } from "./frame_budget.js";
 import { areCompiled, kernelsOf } from "./kernel.js";
 import { Levels, levelsOf } from "./levels.js";
 import { Overlays } from "./overlays.js";
-import { readPicture } from "./picture.js";
 import { weighted } from "./pose.js";
 import { COLOR, DEPTH, Scene } from "./scene.js";
 import { giveBack, takeDevice } from "./shared.js";
@@ -43,6 +42,7 @@ import { BlendVertices } from "./wgsl/dq_skinning.js";
 /** @typedef {{compile: () => Promise<void>}} Compiled */
 /** @typedef {{camera: import("./player.js").CameraState, stereo: boolean, show: import("./player.js").Show, level: import("./player.js").Level, budget: number | null, frameBudget: number | null}} Look */
 
+export const AWAY = "The graphics device is away; try again in a moment.";
 const POSED = "\0"; // no clip's name
 
 export class Renderer {
@@ -95,9 +95,15 @@ export class Renderer {
 
   /** Upload an avatar, so that it can be decoded. @returns {Promise<Slot>} @throws {AvatarError} where the device cannot hold it */
   async add(/** @type {Avatar} */ avatar) {
-    const kernels = Promise.all([this.decoding, compiled(kernelsFor(this.device, avatar))]);
+    const expressing = avatar.expressions.length ? await import("./expressing.js") : null;
+    if (this.destroyed) throw new AvatarError(AWAY); // lost meanwhile
+    const needed = [
+      ...kernelsFor(this.device, avatar),
+      ...Object.values(kernelsOf(this.device, expressing?.KERNELS ?? {})),
+    ];
+    const kernels = Promise.all([this.decoding, compiled(needed)]);
     kernels.catch(() => {}); // where the device cannot hold it
-    const slot = await this.upload(avatar);
+    const slot = await this.upload(avatar, expressing?.Expressing);
     try {
       await kernels;
     } catch (error) {
@@ -108,15 +114,15 @@ export class Renderer {
     return slot;
   }
 
-  /** @returns {Promise<Slot>} */
-  async upload(/** @type {Avatar} */ avatar) {
+  /** @param {Avatar} avatar @param {typeof import("./expressing.js").Expressing} [Expressing] @returns {Promise<Slot>} */
+  async upload(avatar, Expressing) {
     const { gpu } = this.device;
     const memory = new Memory(this.device);
     gpu.pushErrorScope("out-of-memory");
     /** @type {Slot | null} */
     let slot = null;
     try {
-      const frame = new AvatarFrame(new AvatarBuffers(memory, avatar));
+      const frame = new AvatarFrame(new AvatarBuffers(memory, avatar, Expressing));
       const overlays = new Overlays(memory, frame, { color: COLOR, depth: DEPTH });
       slot = { memory, frame, overlays, levels: new Levels(avatar), decoded: null, standing: "" };
       this.rearrange([...this.slots, slot]);
@@ -205,6 +211,7 @@ export class Renderer {
     const target = memory.texture([width, height], COLOR, GPUTextureUsage.COPY_SRC);
     this.submit(target, posed, look);
     try {
+      const { readPicture } = await import("./picture.js");
       return await readPicture(this.device, target);
     } finally {
       memory.free();

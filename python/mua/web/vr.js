@@ -1,8 +1,10 @@
 // A player's avatars before a reader with a headset: where they stand, and what draws them meanwhile.
 
+import "./anatomy.js"; // no frame of a headset waits for what it shows
 import { roomOf } from "./camera.js";
 import { AvatarError } from "./error.js";
 import { Headset } from "./headset.js";
+import { fetchAnatomy } from "./overlays.js";
 import { boxAround, groundOf } from "./placement.js";
 
 const APART = 1.2; // metres between the reader and what is nearest
@@ -23,6 +25,7 @@ export class VR {
     if (!renderer || !engine.entries.length) throw new AvatarError("There is no avatar yet that a headset could show.");
     this.#entering = true;
     try {
+      await fetchAnatomy();
       const headset = await Headset.open(renderer.device, this.asks());
       if (engine.renderer !== renderer) return headset.leave(); // lost, or given back, meanwhile
       this.headset = headset;

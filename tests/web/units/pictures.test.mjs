@@ -148,9 +148,9 @@ test("a pose is decoded ahead while the display or a headset goes on, and exactl
   engine.playback.step = FRAME / 4000;
   const ahead = () => engine.posed().map(({ frame, following }) => following - frame)[0];
   assert.equal(ahead(), 0);
-  engine.room.headset = {};
+  engine.room = { headset: {} };
   assert.equal(ahead(), 1);
-  engine.room.headset = null;
+  engine.room = null;
   engine.request = 1;
   assert.equal(ahead(), 1);
   engine.show.geometry = true;
@@ -213,7 +213,7 @@ test("only those that were chosen are framed", async () => {
 test("a device that is lost ends the headset's session", async () => {
   const engine = await begun(avatar);
   let left = 0;
-  engine.room.headset = { leave: () => (left += 1) };
+  engine.room = { headset: {}, leave: () => (left += 1) };
   await engine.recover(10_000);
   assert.equal(left, 1);
 });

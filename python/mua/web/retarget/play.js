@@ -5,7 +5,7 @@ import { readClip } from "./read.js";
 /** @typedef {import("../player.js").AvatarHandle} AvatarHandle */
 /** @typedef {import("../player.js").ClipInfo} ClipInfo */
 
-/** @param {import("../engine.js").Engine} engine @param {AvatarHandle} handle @param {import("./types.js").MotionSource} source @param {import("./types.js").PlayClipOptions} [options] @returns {Promise<import("./types.js").PlayedClip | null>} */
+/** @param {import("../avatars.js").Avatars} engine @param {AvatarHandle} handle @param {import("./types.js").MotionSource} source @param {import("./types.js").PlayClipOptions} [options] @returns {Promise<import("./types.js").PlayedClip | null>} */
 export async function playClip(engine, handle, source, options = {}) {
   const entry = engine.entryOf(handle);
   if (!entry) return null;
