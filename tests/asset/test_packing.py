@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from malformed import malformed, put
 from synthetic_avatar import synthetic_avatar
+from tree_edits import edited, put
 from unpackable import stream
 
 from mua.arrays import Array
@@ -94,7 +94,7 @@ def test_a_bomb_is_refused_in_bounded_memory(network: bytes) -> None:
         "data": stream(bytes(1 << 26)),
         "packing": "Deflate",
     }
-    content = malformed(network, put("surface", {"runs": np.zeros(0, np.uint8), "strips": bomb}))
+    content = edited(network, put("surface", {"runs": np.zeros(0, np.uint8), "strips": bomb}))
     tracemalloc.start()
     with pytest.raises(FormatError) as caught:
         parse_checked(content)
@@ -106,7 +106,7 @@ def test_a_bomb_is_refused_in_bounded_memory(network: bytes) -> None:
 
 def test_a_stream_longer_than_its_shape_is_not_unpacked_to_its_end(network: bytes) -> None:
     tensor = {**pack(np.zeros((2, 3))), "data": stream(bytes(1 << 26)), "packing": "Deflate"}
-    content = malformed(network, put("bounds", tensor))
+    content = edited(network, put("bounds", tensor))
     tracemalloc.start()
     with pytest.raises(FormatError, match="gives more than 24 bytes, expected 24"):
         parse_checked(content)
@@ -124,7 +124,7 @@ def test_the_claims_of_all_tensors_count_together(network: bytes) -> None:
     def several(tree: dict[str, object]) -> None:
         tree["clips"] = [{**tree["clips"][0], "rotations": bomb}] * 40  # type: ignore[index]
 
-    content = malformed(network, several)
+    content = edited(network, several)
     assert held
     assert size < UNPACKED_TIMES * len(content) + UNPACKED_ROOM < 40 * size
     with pytest.raises(FormatError) as caught:

@@ -8,8 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from damaged import DAMAGED
-from malformed import EXPRESSIVE, MALFORMED, crowded, flipped, malformed, seal_unread, times
+from malformed import EXPRESSIVE, MALFORMED, crowded, flipped
 from synthetic_avatar import synthetic_avatar, with_expressions, with_surface
+from tree_edits import edited, seal_unread, times
 from unpackable import UNPACKABLE
 
 from mua.asset.flatbuffer import FormatError, Tree, parse
@@ -76,7 +77,7 @@ def test_mutated_bytes_with_a_right_checksum_never_escape_the_reader(content: by
 
 
 def test_a_dual_quaternion_may_have_either_sign(content: bytes) -> None:
-    decode(malformed(content, times("skeleton.bind_inverse", -1)))
+    decode(edited(content, times("skeleton.bind_inverse", -1)))
 
 
 @pytest.mark.parametrize(
@@ -84,7 +85,7 @@ def test_a_dual_quaternion_may_have_either_sign(content: bytes) -> None:
 )
 def test_malformed_field_is_named(content: bytes, code: str, field: str, edit: Callable[[Tree], None]) -> None:
     with pytest.raises(FormatError) as caught:
-        decode(malformed(content, edit))
+        decode(edited(content, edit))
     assert (caught.value.code, caught.value.field) == (code, field)
 
 
@@ -94,14 +95,14 @@ def test_malformed_field_is_named(content: bytes, code: str, field: str, edit: C
 @pytest.mark.parametrize("storage", ["f32", "f16"])
 def test_malformed_expression_is_named(storage: Storage, code: str, field: str, edit: Callable[[Tree], None]) -> None:
     with pytest.raises(FormatError) as caught:
-        decode(malformed(encode(with_expressions(synthetic_avatar()), storage=storage), edit))
+        decode(edited(encode(with_expressions(synthetic_avatar()), storage=storage), edit))
     assert (caught.value.code, caught.value.field) == (code, field)
 
 
 @pytest.mark.parametrize(("expressions", "sound"), [(1, True), (600, False)])
 def test_weights_count_among_what_clips_gain(expressions: int, sound: bool) -> None:
     """3 joints and an expression in each frame stay within 2^24 numbers at the rate of the encoding, and 603 do not."""
-    content = malformed(encode(with_expressions(synthetic_avatar()), storage="f32"), crowded(expressions))
+    content = edited(encode(with_expressions(synthetic_avatar()), storage="f32"), crowded(expressions))
     with nullcontext() if sound else pytest.raises(FormatError, match="too many for the encoding's rate"):
         decode(content)
 
@@ -113,7 +114,7 @@ def test_malformed_field_of_a_packed_file_is_named(
     network: bytes, code: str, field: str, edit: Callable[[Tree], None]
 ) -> None:
     with pytest.raises(FormatError) as caught:
-        decode(malformed(network, edit))
+        decode(edited(network, edit))
     assert (caught.value.code, caught.value.field) == (code, field)
 
 
@@ -132,7 +133,7 @@ def test_a_third_barycentric_that_rounding_makes_negative_is_none(content: bytes
         stored[0] = 0.75, 0.25 + 2.0**-23
         tree["texels"]["barycentrics"] = pack(stored)
 
-    found = decode_tree(parse_checked(malformed(content, edit))).rig.texels.barycentrics
+    found = decode_tree(parse_checked(edited(content, edit))).rig.texels.barycentrics
     assert found[0, 2] == 0
     assert (found >= 0).all()
 
@@ -147,7 +148,7 @@ def test_sentence_names_the_file(tmp_path: Path) -> None:
 
 
 def test_the_inverse_of_the_bind_pose_may_have_the_opposite_sign(content: bytes) -> None:
-    decode(malformed(content, flipped(0)))
+    decode(edited(content, flipped(0)))
 
 
 @pytest.mark.parametrize(
@@ -172,7 +173,7 @@ def test_the_largest_texture_without_texels_decodes_in_little_memory(content: by
             tree[name]["static_offset"] = pack(np.zeros((count, 0)))
         del tree["surface"]
 
-    avatar = decode_tree(parse_checked(malformed(content, wide)))
+    avatar = decode_tree(parse_checked(edited(content, wide)))
     tracemalloc.start()
     splats = avatar.decode(avatar.clips[0], 1)
     most = tracemalloc.get_traced_memory()[1]

@@ -11,7 +11,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from mutations import FAULTS, Fault
+from fault import Fault
+from mutations import FAULTS
 
 from mua.errors import InputError
 from mua.gpu import sources

@@ -9,7 +9,8 @@ from pathlib import Path
 
 import mutate
 import pytest
-from mutations import FAULTS, Fault
+from fault import Fault
+from mutations import FAULTS
 
 from mua import kernels
 from mua.gpu import sources

@@ -1,7 +1,7 @@
-"""The interactive player answers mouse, keys and panel; its window opens on a display and says so where there is none.
+"""The interactive player answers mouse and keys; its window opens on a display and says so where there is none.
 
-Most tests drive the window's own code on rendercanvas' off-screen canvas, whose images can be read back; one opens a
-window on a virtual display and looks at the screen.
+Most tests drive a window without a display (driven_window.py); one opens a window on a virtual display and looks at the
+screen.
 """
 
 import os
@@ -9,126 +9,26 @@ import shutil
 import subprocess
 import sys
 import time
-from collections.abc import Iterator, Mapping
-from dataclasses import fields, replace
+from collections.abc import Iterator
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from imgui_bundle import imgui
+from driven_window import COLOR, EMPTY, LOOK, SIZE, Driven
 from PIL import ImageGrab
-from rendercanvas.offscreen import RenderCanvas
-from vmc_senders import Program, bundle
 
-from mua.arrays import Array
 from mua.cli.view_options import Asked, look_of
 from mua.errors import InputError
 from mua.gpu import Device
-from mua.live.live import EASING
-from mua.live.receiver import Address, Receiver
-from mua.live.vmc import QUIET
 from mua.player.panel import KEYS, WIDTH
-from mua.player.session import Session
-from mua.player.shot import Look
 from mua.player.source import Source
 from mua.player.toggles import Toggles
-from mua.player.viewer import Viewer
 from mua.player.window import show
 
-SIZE = (640, 360)
-LOOK = look_of(Asked(), None)
-COLOR = tuple(round(255 * c) for c in LOOK.background or ())
 DEADLINE = 120.0  # seconds for a window to open on a busy machine; it takes a few
-EMPTY = (slice(300, 350), slice(WIDTH + 20, WIDTH + 60))  # rows and columns beside panel and figure
-
-
-@pytest.fixture
-def window(device: Device, avatar_files: tuple[Path, ...]) -> Iterator["Driven"]:
-    driven = Driven(device, avatar_files)
-    yield driven
-    driven.canvas.close()
-
-
-class Driven:
-    """A window on a canvas without a display, at rest."""
-
-    def __init__(self, device: Device, avatar_files: tuple[Path, ...], look: Look = LOOK) -> None:
-        self.canvas = RenderCanvas(size=SIZE)
-        self.viewer = Viewer(self.canvas, device, Source(avatar_files), look)
-        self.session: Session = self.viewer.session
-        self.session.playing = False
-        self.picture()  # frames the view
-
-    def send(self, *events: Mapping[str, object]) -> None:
-        for event in events:
-            self.canvas.submit_event(dict(event))
-        self.canvas._process_events()
-
-    def press(self, key: str) -> None:
-        self.send(*[{"event_type": f"key_{way}", "key": key, "modifiers": ()} for way in ("down", "up")])
-
-    def drag(
-        self, start: tuple[int, int], end: tuple[int, int], *, button: int, modifiers: tuple[str, ...] = ()
-    ) -> None:
-        common = {"button": button, "buttons": (button,), "modifiers": modifiers, "touches": {}, "ntouches": 0}
-        for kind, (x, y) in (
-            ("pointer_move", start),
-            ("pointer_down", start),
-            ("pointer_move", end),
-            ("pointer_up", end),
-        ):
-            buttons = () if kind == "pointer_move" and (x, y) == start else common["buttons"]
-            self.send({**common, "event_type": kind, "x": x, "y": y, "buttons": buttons})
-            self.picture()  # drawing updates the panel's mouse position
-
-    def picture(self) -> Array:
-        return np.asarray(self.canvas.draw())[..., :3].copy()
-
-    def click(self, x: int, y: int) -> None:
-        self.drag((x, y), (x, y), button=1)
-
-
-def test_draws_panel_and_figure_over_the_background(window: Driven) -> None:
-    image = window.picture()
-    assert image.shape == (SIZE[1], SIZE[0], 3)
-    np.testing.assert_array_equal(np.unique(image[EMPTY].reshape(-1, 3), axis=0), [COLOR])
-    assert (image[:40, :WIDTH] != COLOR).any(axis=2).mean() > 0.9
-    assert (image[:, WIDTH:] != COLOR).any(axis=2).sum() > 100
-
-
-def test_the_panel_says_of_how_many_splats_the_figure_is(window: Driven, monkeypatch: pytest.MonkeyPatch) -> None:
-    said: list[str] = []
-    monkeypatch.setattr("mua.player.panel.imgui.text_disabled", said.append)
-    window.picture()
-    assert f"{window.session.splats:,} splats, {window.session.level}" in said
-    assert f"outside of training: {window.session.outside:.0%}" in said
-
-
-def test_the_panel_says_what_comes_from_another_program(
-    device: Device, avatar_files: tuple[Path, ...], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    said: list[str] = []
-    bars: dict[str, float] = {}
-    canvas = RenderCanvas(size=SIZE)
-    with Receiver(Address(0)) as receiver, Program(receiver) as program:
-        source = Source(avatar_files, receiver=receiver, mapping={"root": "Hips", "tip": "Head"})
-        viewer = Viewer(canvas, device, source, LOOK)
-        monkeypatch.setattr("mua.player.panel.imgui.text_wrapped", said.append)
-        monkeypatch.setattr("mua.player.panel.imgui.progress_bar", lambda weight, _, name: bars.update({name: weight}))
-        viewer.session.playing = False
-        program.send(bundle(("/VMC/Ext/Blend/Val", "Joy", 0.5), ("/VMC/Ext/Blend/Val", "Sorrow", 0.0)), b"nonsense")
-        frame = receiver.newest(time.monotonic() + QUIET)
-        assert frame is not None
-        assert viewer.session.live is not None
-        for later in (0.0, 1.5 * EASING):
-            viewer.session.live.advance(frame.time + later)
-        canvas.draw()
-        assert bars["Joy"] == pytest.approx(0.5)
-        assert "Sorrow" not in bars
-        assert any("1 packets are no OSC and were dropped" in sentence for sentence in said)
-    canvas.close()
 
 
 def test_orbits_pans_and_zooms_by_mouse(window: Driven) -> None:
@@ -158,13 +58,6 @@ def test_orbits_pans_and_zooms_by_mouse(window: Driven) -> None:
         assert (one[:, WIDTH:] != other[:, WIDTH:]).any()
 
 
-def test_keeps_the_view_while_the_mouse_is_on_the_panel(window: Driven) -> None:
-    before = window.session.view
-    window.drag((100, 8), (100, 8), button=1)
-    window.send({"event_type": "wheel", "dx": 0, "dy": 300, "x": 100, "y": 60, "buttons": (), "modifiers": ()})
-    assert window.session.view is before
-
-
 def test_every_key_does_what_the_panel_says(window: Driven) -> None:
     session = window.session
     window.press(" ")
@@ -190,61 +83,6 @@ def test_every_key_does_what_the_panel_says(window: Driven) -> None:
     window.press("c")
     assert session.clip.name == "twice"
     assert set(KEYS) == {" ", "ArrowLeft", "ArrowRight", *"12345", *"acflrst"}
-
-
-def test_shows_and_hides_by_the_boxes_of_the_panel(window: Driven) -> None:
-    changed: set[str] = set()
-    for y in range(140, 300, 5):  # wherever the boxes lie: down the column in which they stand
-        before = window.session.toggles
-        window.click(16, y)
-        after = window.session.toggles
-        changed |= {
-            field.name for field in fields(Toggles) if getattr(before, field.name) != getattr(after, field.name)
-        }
-    assert changed == {field.name for field in fields(Toggles)}
-
-
-def test_sliders_move_the_face_until_the_clip_does(
-    device: Device, avatar_files: tuple[Path, ...], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(imgui, "collapsing_header", lambda label: label.startswith("Expressions"))
-    window = Driven(device, avatar_files[1:2])
-    moved: set[str] = set()
-    ended = False
-    before = window.picture()[:, WIDTH + 20 :]
-    for y in range(140, 324, 8):  # wherever the sliders lie, and the button below them
-        window.click(90, y)
-        if window.session.weights:
-            shown = window.session.expressions
-            assert all(0 <= weight <= 1 for weight in shown.values())
-            moved |= {name for name, weight in shown.items() if weight > 0}
-        ended |= bool(moved) and not window.session.weights
-        if moved == {"jawOpen"}:
-            assert (window.picture()[:, WIDTH + 20 :] != before).any()
-    assert moved == {"jawOpen", "eyeBlinkLeft", "nothing", "Mund auf"}
-    assert ended
-    window.canvas.close()
-
-
-def test_the_list_of_expressions_is_narrowed_by_a_search(
-    device: Device, avatar_files: tuple[Path, ...], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    listed: list[str] = []
-    slider = imgui.slider_float
-
-    def noting(label: str, *given: Any) -> Any:
-        listed.append(label)
-        return slider(label, *given)
-
-    monkeypatch.setattr(imgui, "collapsing_header", lambda label: label.startswith("Expressions"))
-    monkeypatch.setattr(imgui, "slider_float", noting)
-    window = Driven(device, avatar_files[1:2])
-    for search, found in (("", 4), ("EYE", 1), ("a", 2)):
-        window.session.search = search
-        listed.clear()
-        window.picture()
-        assert len(set(listed) - {"speed"}) == found
-    window.canvas.close()
 
 
 def test_changes_the_picture_with_every_toggle(window: Driven) -> None:
@@ -303,15 +141,6 @@ def test_plays_round_and_scrubs(window: Driven) -> None:
     assert (session.index, session.playing) == (count - 1, False)
     session.advance(10.0)
     assert session.index == count - 1
-
-
-def test_the_buttons_of_the_panel_go_a_frame_back_and_on(window: Driven, monkeypatch: pytest.MonkeyPatch) -> None:
-    for label, frames in (("<", -1), (">", 1)):
-        window.session.step(3 - window.session.index)
-        with monkeypatch.context() as pressed:
-            pressed.setattr("mua.player.panel.imgui.button", lambda name, *_, label=label: name == label)
-            window.picture()
-        assert window.session.index == 3 + frames
 
 
 def test_draws_two_eyes_beside_each_other(window: Driven) -> None:

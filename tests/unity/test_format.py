@@ -8,8 +8,9 @@ import pytest
 from csharp import RUNTIME, CSharp
 from damaged import DAMAGED
 from format_program import values
-from malformed import EXPRESSIVE, MALFORMED, malformed
+from malformed import EXPRESSIVE, MALFORMED
 from synthetic_avatar import sparse_avatar, synthetic_avatar, with_expressions, with_surface
+from tree_edits import edited
 from unpackable import UNPACKABLE
 
 from mua.asset.flatbuffer import FormatError
@@ -98,11 +99,11 @@ def test_checksum_is_that_of_zlib_at_any_length(csharp: CSharp, program: Path, c
 def test_malformed_files_get_the_same_code_and_field(
     csharp: CSharp, program: Path, tmp_path: Path, content: bytes
 ) -> None:
-    files = [malformed(content, edit) for _, _, edit in MALFORMED] + [damage(content) for _, _, damage in DAMAGED]
+    files = [edited(content, edit) for _, _, edit in MALFORMED] + [damage(content) for _, _, damage in DAMAGED]
     network = encode(with_surface(synthetic_avatar()), storage="packed")
-    files += [malformed(network, edit) for _, _, edit in UNPACKABLE]
+    files += [edited(network, edit) for _, _, edit in UNPACKABLE]
     face = encode(with_expressions(synthetic_avatar()), storage="f16")
-    files += [malformed(face, edit) for _, _, edit in EXPRESSIVE]
+    files += [edited(face, edit) for _, _, edit in EXPRESSIVE]
     expected = [(code, field) for code, field, _ in [*MALFORMED, *DAMAGED, *UNPACKABLE, *EXPRESSIVE]]
     assert csharp_answers(csharp, program, write_all(tmp_path, files)) == expected
 

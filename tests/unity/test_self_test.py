@@ -10,8 +10,9 @@ from typing import Any
 import gen_golden
 import pytest
 from csharp import PROGRAMS, ROOT, RUNTIME, CSharp, by_name
+from fault import Fault
 from golden import read_golden
-from mutations import FAULTS, Fault
+from mutations import FAULTS
 from replay import replay
 from synthetic_avatar import synthetic_avatar
 

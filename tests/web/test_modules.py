@@ -11,8 +11,9 @@ from typing import Any
 import numpy as np
 import pytest
 from damaged import DAMAGED
-from malformed import EXPRESSIVE, MALFORMED, crowded, malformed
+from malformed import EXPRESSIVE, MALFORMED, crowded
 from synthetic_avatar import sparse_avatar, synthetic_avatar, with_expressions, with_random_poses, with_surface
+from tree_edits import edited
 from turn_scenarios import decided, run, timed, wander, written
 from unpackable import UNPACKABLE
 
@@ -98,11 +99,11 @@ def test_sound_files_are_read(tmp_path: Path, storage: Any) -> None:
 
 
 def test_malformed_files_get_the_same_sentence(tmp_path: Path, content: bytes) -> None:
-    files = [malformed(content, edit) for _, _, edit in MALFORMED] + [damage(content) for _, _, damage in DAMAGED]
+    files = [edited(content, edit) for _, _, edit in MALFORMED] + [damage(content) for _, _, damage in DAMAGED]
     network = encode(with_surface(synthetic_avatar()), storage="packed")
-    files += [malformed(network, edit) for _, _, edit in UNPACKABLE]
+    files += [edited(network, edit) for _, _, edit in UNPACKABLE]
     face = encode(with_expressions(synthetic_avatar()), storage="f16")
-    files += [malformed(face, edit) for _, _, edit in EXPRESSIVE]
+    files += [edited(face, edit) for _, _, edit in EXPRESSIVE]
     expected = [(code, field) for code, field, _ in [*MALFORMED, *DAMAGED, *UNPACKABLE, *EXPRESSIVE]]
     found = answers(tmp_path, files)
     assert [tuple(answer[:2]) for answer in found] == expected
@@ -256,7 +257,7 @@ def test_expressions_are_those_of_python(tmp_path: Path, storage: Any) -> None:
 def test_weights_count_among_what_clips_gain(tmp_path: Path) -> None:
     """40 frames at a thousand times their rate: 3 joints of each stay within 2^24, 603 numbers do not."""
     content = encode(with_expressions(synthetic_avatar()), storage="f32")
-    files = [malformed(content, crowded(expressions)) for expressions in (1, 600)]
+    files = [edited(content, crowded(expressions)) for expressions in (1, 600)]
     assert answers(tmp_path, files) == [python_answer(file) for file in files]
     assert [len(python_answer(file)) for file in files] == [1, 3]
 

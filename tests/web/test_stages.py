@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from malformed import malformed
 from synthetic_avatar import synthetic_avatar, with_expressions, with_surface
+from tree_edits import edited
 from unpackable import trailing
 from web.browser import Page
 from web.pages import ELEMENT, SENTENCE
@@ -51,7 +51,7 @@ def claiming(content: bytes, lie: Callable[[Any], Any]) -> bytes:
 
 def test_a_browser_refuses_bytes_after_a_stream(page: Page, packed: bytes) -> None:
     """Node needs a stand-in for that: strict_inflate.mjs."""
-    longer = malformed(packed, trailing)
+    longer = edited(packed, trailing)
     bytes_of = [base64.b64encode(content).decode() for content in (packed, longer)]
     bytes_in = "Uint8Array.from(atob(text), (byte) => byte.charCodeAt(0)).buffer"
     asked = f"(text) => read({bytes_in}).then(() => 'ok', (error) => error.code)"
