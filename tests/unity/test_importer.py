@@ -27,7 +27,7 @@ def program(csharp: CSharp) -> Path:
     package = [name for name in known["Mua.Avatar.Editor"].references if name in known]
     references = [compiler.built(name) for name in ("UnityEngine", "UnityEditor", *package, "Mua.Avatar.Editor")]
     return csharp.build(
-        [PROGRAMS / "shared" / "PackageResources.cs", PROGRAMS / "ImporterProgram.cs"],
+        [PROGRAMS / "shared" / "PackageResources.cs", *PROGRAMS.glob("Importer*.cs")],
         name="Mua.Avatar.Editor.Tests",
         references=references,
     )

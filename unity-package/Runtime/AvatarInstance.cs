@@ -16,8 +16,6 @@ namespace Mua
         private AvatarLoader loader; // null once everything is on the device
         private AvatarBuffers buffers;
         private AvatarMotion motion;
-        private Camera neededBy; // the last camera whose image it is in
-        private int neededFrame = -2; // displayed frame of that
         private string chosen = ""; // the clip's name when it took effect
         private string refusal; // why there is no room beside the other avatars
         private bool hasMoved; // since the last Record
@@ -72,6 +70,9 @@ namespace Mua
         /// <summary>Its views other than splats; null until it is ready.</summary>
         public AvatarSurface Surface { get; private set; }
 
+        /// <summary>Which cameras it is drawn for; null until it is ready.</summary>
+        public AvatarSight Sight { get; private set; }
+
         public AvatarViews Views => owner.Views;
 
         /// <summary>Level of detail for the next Record.</summary>
@@ -84,8 +85,6 @@ namespace Mua
         /// <summary>Whether distance and budget choose the level; the detailed geometry is of the finest.</summary>
         public bool ChoosesLevel =>
             owner.Level == AvatarLevel.Automatic && (Views & AvatarViews.Splats) != 0 && (Views & AvatarViews.Geometry) == 0;
-
-        public int Layer => owner.gameObject.layer;
 
         /// <summary>Box of the last pose in Unity's world, metres; empty until it is ready.</summary>
         public Bounds Bounds =>
@@ -150,50 +149,7 @@ namespace Mua
             {
                 Decoded.Show();
             }
-            Surface.CastShadow(Views, Bounds, Layer);
-        }
-
-        /// <summary>
-        /// Whether a camera draws its layer, and in the editor what its scene belongs to: the scene view shows an opened prefab
-        /// alone, the game view never shows it.
-        /// </summary>
-        public bool IsShownTo(Camera camera)
-        {
-            bool isOnLayer = (camera.cullingMask & (1 << Layer)) != 0;
-#if UNITY_EDITOR
-            return isOnLayer
-                && UnityEditor.SceneManagement.StageUtility.IsGameObjectRenderedByCamera(owner.gameObject, camera);
-#else
-            return isOnLayer;
-#endif
-        }
-
-        /// <summary>Whether it is drawn for these eyes of the camera that is recorded.</summary>
-        public bool IsSeenBy(AvatarEyes eyes)
-        {
-            return Decoded.IsShown && eyes.Sees(Decoded.Low, Decoded.High, AvatarEyes.SplatReach);
-        }
-
-        /// <summary>Whether it, or the shadow that it casts, may be drawn for these eyes.</summary>
-        public bool IsNeededFor(AvatarEyes eyes)
-        {
-            bool hasShadow = (Views & AvatarViews.Shadow) != 0;
-            float reach = hasShadow ? AvatarEyes.ShadowReach : AvatarEyes.SplatReach;
-            return Decoded.IsShown && eyes.Sees(Decoded.Low, Decoded.High, reach);
-        }
-
-        /// <summary>
-        /// Whether this camera needs it now, or another one did in this displayed frame or the last.
-        /// </summary>
-        public bool IsNeeded(Camera camera, AvatarEyes eyes)
-        {
-            bool isNow = IsNeededFor(eyes);
-            if (isNow)
-            {
-                neededBy = camera;
-                neededFrame = Time.frameCount;
-            }
-            return isNow || (!ReferenceEquals(neededBy, camera) && neededFrame >= Time.frameCount - 1);
+            Surface.CastShadow(Views, Bounds, owner.gameObject.layer);
         }
 
         /// <summary>Asks for the decodes of this displayed frame.</summary>
@@ -205,7 +161,7 @@ namespace Mua
                 Due = pose.Due,
                 Following = pose.Following,
                 Level = Level,
-                Rank = alone ? 0 : Seen(eyes).Height * pose.Turned,
+                Rank = alone ? 0 : Sight.Seen(eyes).Height * pose.Turned,
                 Spreads = spreads && !(alone && isMissed),
                 MayLag = pose.MayLag,
             };
@@ -244,23 +200,6 @@ namespace Mua
                 Decoded.Repose(commands, motion.Pose.Current, motion.Pose.CurrentTranslations, placement.Value);
             }
             hasMoved = false;
-        }
-
-        /// <summary>How near the eyes are to it, and how large a texel at the nearest point of its box looks to them.</summary>
-        public AvatarSeen Seen(AvatarEyes eyes)
-        {
-            var eye = new Vector3(eyes.Middle.x, eyes.Middle.y, eyes.Middle.z);
-            Vector3 aside = Vector3.Max(Vector3.Max(Decoded.Low - eye, eye - Decoded.High), Vector3.zero);
-            double distance = aside.magnitude, focal = Math.Abs(eyes.Projection[0].m11) * eyes.Screen[1] / 2;
-            double metre = focal / Math.Max(distance, eyes.Near);
-            return new AvatarSeen
-            {
-                Distance = distance,
-                Texel = Decoded.Size * buffers.TexelLength * metre,
-                Height = (Decoded.High.y - Decoded.Low.y) * metre,
-                Counts = buffers.SplatCounts,
-                Level = level,
-            };
         }
 
         /// <summary>Makes the next Record pose the avatar again.</summary>
@@ -328,6 +267,7 @@ namespace Mua
             buffers?.Dispose();
             loader = null;
             Surface = null;
+            Sight = null;
             Decoded = null;
             buffers = null;
             motion = null;
@@ -347,6 +287,7 @@ namespace Mua
             buffers = loader.Take();
             Decoded = new AvatarFrame(resources, buffers);
             Surface = new AvatarSurface(resources, Decoded);
+            Sight = new AvatarSight(owner, Decoded, buffers);
             motion = new AvatarMotion(buffers.Avatar);
             AvatarWorld.Add(this, resources);
             loader.Dispose();

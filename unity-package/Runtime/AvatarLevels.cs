@@ -37,8 +37,9 @@ namespace Mua
             int count = 0;
             for (int i = 0; i < avatars.Count; i++)
             {
-                AvatarSeen now = avatars[i].Seen(eyes), before = nearest[i];
-                if (!avatars[i].IsSeenBy(eyes))
+                AvatarSeen now = avatars[i].Sight.Seen(eyes), before = nearest[i];
+                now.Level = avatars[i].Level;
+                if (!avatars[i].Sight.IsSeenBy(eyes))
                 {
                     now = Unseen(now);
                 }

@@ -63,7 +63,7 @@ namespace Mua
             for (int i = 0; i < avatars.Count; i++)
             {
                 AvatarInstance avatar = avatars[i];
-                if (!avatar.IsNeeded(camera, eyes))
+                if (!avatar.Sight.IsNeeded(camera, eyes))
                 {
                     continue;
                 }

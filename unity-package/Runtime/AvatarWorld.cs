@@ -111,14 +111,14 @@ namespace Mua
             }
             for (int i = 0; i < avatars.Count; i++)
             {
-                avatars[i].Decoded.IsShown = avatars[i].IsShownTo(camera);
+                avatars[i].Decoded.IsShown = avatars[i].Sight.IsShownTo(camera);
             }
             levels.See(avatars, eyes, turns.Limit);
             turns.Take(commands, avatars, camera, eyes);
             for (int i = 0; i < avatars.Count; i++)
             {
                 avatars[i].Decoded.IsShown &= avatars[i].Decoded.IsDecoded; // it may be another's turn
-                if (avatars[i].IsNeededFor(eyes))
+                if (avatars[i].Sight.IsNeededFor(eyes))
                 {
                     avatars[i].Record(commands);
                 }
@@ -149,7 +149,7 @@ namespace Mua
             }
             for (int i = 0; i < avatars.Count; i++)
             {
-                if (avatars[i].IsShownTo(camera))
+                if (avatars[i].Sight.IsShownTo(camera))
                 {
                     return true;
                 }
@@ -203,7 +203,7 @@ namespace Mua
             for (int i = 0; i < avatars.Count; i++)
             {
                 AvatarInstance avatar = avatars[i];
-                if (!avatar.IsSeenBy(eyes))
+                if (!avatar.Sight.IsSeenBy(eyes))
                 {
                     continue;
                 }

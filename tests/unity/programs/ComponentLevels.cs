@@ -82,7 +82,7 @@ namespace Mua
                     eyes.Begin(400, 200, 0.25f);
                     Matrix4x4 before = Matrix4x4.Translate(new Vector3(0, 0, away) - middle);
                     eyes.Add(Matrix4x4.Scale(new Vector3(1, 1, -1)) * before, projection);
-                    AvatarSeen seen = instance.Seen(eyes);
+                    AvatarSeen seen = instance.Sight.Seen(eyes);
                     Say("seen", seen.Distance + " " + seen.Texel / shown.Decoded.Avatar.TexelLength);
                 }
             }
@@ -94,7 +94,7 @@ namespace Mua
                 Vector3 eye = middle + new Vector3(shown.Bounds.extents.x + aside, 0, 0);
                 both.Add(Matrix4x4.Scale(new Vector3(1, 1, -1)) * Matrix4x4.Translate(-eye), upright);
             }
-            Say("between", instance.Seen(both).Distance);
+            Say("between", instance.Sight.Seen(both).Distance);
         }
 
         private static void SharesBudget()
