@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 from synthetic_avatar import empty_avatar, synthetic_avatar, with_one_sided
 
-from mua.avatar.decode import Splats, decode, decode_clip_frame
+from mua.avatar.decode import PoseWindow, Splats, decode, decode_clip_frame
 
 # Sums on the way of one value: four layers of at most 63 terms, 4 basis maps, 4 levels of 2 x 10 taps, 20 in posing.
 OPERATIONS = 4 * 63 + 4 + 80 + 20
@@ -29,7 +29,7 @@ def test_a_frame_of_a_clip_is_its_window_newest_first() -> None:
     avatar = synthetic_avatar()
     clip = avatar.clips[0]
     for frame, window in ((3, [3, 2, 1]), (1, [1, 0, 0]), (0, [0, 0, 0])):
-        expected = decode(avatar, clip.rotations[window], translations=clip.translations[window])
+        expected = decode(avatar, PoseWindow(clip.rotations[window], clip.translations[window]))
         np.testing.assert_array_equal(decode_clip_frame(avatar, clip, frame=frame).centres, expected.centres)
 
 

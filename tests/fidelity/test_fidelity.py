@@ -184,7 +184,7 @@ def test_a_body_that_turns_on_a_still_root_is_seen_from_its_own_front(tmp_path: 
 
 def test_a_poor_silhouette_is_reported_with_its_pose_and_place() -> None:
     image = np.zeros((2, 2, 4))
-    shot = Shot("front", image, image, Agreement(90, 5, 5, 0.0), (0, 0), "Spine", 0.1)
+    shot = Shot(image, image, Agreement(90, 5, 5, 0.0), "front", (0, 0), "Spine", 0.1)
     (sentence,) = report.sentences(Fidelity((PoseFidelity("bow", (shot,)),)))
     assert "overlap by only 90.0 % in the pose 'bow'" in sentence
     assert sentence.endswith("worst at Spine, seen from front.")

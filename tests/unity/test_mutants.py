@@ -2,6 +2,7 @@
 
 import json
 import resource
+import sys
 import zlib
 from collections import Counter
 from collections.abc import Callable, Iterator
@@ -17,8 +18,8 @@ from mutants import expression_mutant, mutant, packed_mutant
 from oracle import expressions, file
 from oracle.motion import Pose
 from readers import SECONDS, Reader, within
+from recent_node import NEEDS_NODE
 from synthetic_avatar import synthetic_avatar, with_expressions, with_surface
-from web.test_modules import lacking
 
 from mua.asset.flatbuffer import FormatError, parse
 from mua.asset.packing import tensors
@@ -31,6 +32,10 @@ from mua.pose.resample import resample
 
 STORAGES: tuple[Storage, ...] = ("i8", "f16", "f32", "packed")
 Made = Callable[[list[bytes], int], bytes]
+NEEDS_LINUX = pytest.mark.skipif(
+    not sys.platform.startswith("linux"),
+    reason="needs Linux, which refuses a process more memory than it may take: any machine with Linux runs this test",
+)
 MODULES = Path(__file__).parents[1] / "web" / "modules.mjs"
 FEW, ALL, BLOCK = 300, 100_000, 10_000
 ROOM = 1 << 29  # bytes that reading and decoding one of them may take here: 5,000 times its size
@@ -59,8 +64,8 @@ def blocks() -> list[Any]:
     return [range(FEW), *(pytest.param(range(k, k + BLOCK), marks=pytest.mark.long) for k in range(0, ALL, BLOCK))]
 
 
-@pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="needs Linux, which bounds what a process may take")
-@pytest.mark.skipif(lacking(), reason="needs Node 20.12 or later")
+@NEEDS_LINUX
+@NEEDS_NODE
 @pytest.mark.parametrize("made", [mutant, packed_mutant], ids=["all", "packed"])
 @pytest.mark.parametrize("seeds", blocks(), ids=lambda seeds: f"{seeds.start}-{seeds.stop}")
 def test_readers_agree_on_mutants_and_what_they_accept_is_finite(
@@ -92,8 +97,8 @@ def test_readers_agree_on_mutants_and_what_they_accept_is_finite(
     assert codes["packed"] > (count / 5 if made is packed_mutant else 0)
 
 
-@pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="needs Linux, which bounds what a process may take")
-@pytest.mark.skipif(lacking(), reason="needs Node 20.12 or later")
+@NEEDS_LINUX
+@NEEDS_NODE
 @pytest.mark.parametrize("seeds", blocks(), ids=lambda seeds: f"{seeds.start}-{seeds.stop}")
 def test_mutants_with_expressions_are_refused_or_move_a_face_as_the_page_says(
     csharp_reader: Reader, web_reader: Reader, tmp_path: Path, seeds: range

@@ -1,7 +1,6 @@
 """The browser player's modules, run by Node, against the Python that they follow."""
 
 import json
-import shutil
 import subprocess
 from collections.abc import Sequence
 from dataclasses import replace
@@ -12,6 +11,7 @@ import numpy as np
 import pytest
 from damaged import DAMAGED
 from malformed import EXPRESSIVE, MALFORMED, crowded
+from recent_node import NEEDS_NODE
 from synthetic_avatar import sparse_avatar, synthetic_avatar, with_expressions, with_random_poses, with_surface
 from tree_edits import edited
 from turn_scenarios import decided, run, timed, wander, written
@@ -46,17 +46,8 @@ SECONDS = 600  # a reader that hangs; so many files take some seconds
 CUT = 97  # so many bytes apart a file is cut off
 
 TSC = HERE / "node_modules" / ".bin" / "tsc"
-OLDEST = (20, 12)  # of Node, that unpacks what has no zlib header
 
-
-def lacking() -> bool:
-    if shutil.which("node") is None:
-        return True
-    reported = subprocess.run(["node", "--version"], capture_output=True, text=True, check=True).stdout
-    return tuple(int(part) for part in reported.lstrip("v").split(".")[:2]) < OLDEST
-
-
-pytestmark = pytest.mark.skipif(lacking(), reason="needs Node 20.12 or later")
+pytestmark = NEEDS_NODE
 
 
 def node(what: str, *given: object) -> list[Any]:

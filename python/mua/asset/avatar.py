@@ -12,7 +12,7 @@ import numpy.typing as npt
 from mua.arguments import describe, finite_array, float_type, unit_quaternions, whole_number
 from mua.arrays import Array
 from mua.avatar.coarser import at_level, coarsest
-from mua.avatar.decode import Splats, decode, decode_clip_frame
+from mua.avatar.decode import PoseWindow, Splats, decode, decode_clip_frame
 from mua.avatar.model import Model
 from mua.errors import InputError
 from mua.pose.clip import Clip
@@ -74,7 +74,7 @@ class Avatar(Model):
             raise InputError(f"frame is {number}; a window of poses has only frame 0")
         rotations, translations = self._window(clip)
         weights = self._pose_weights(clip[0].expressions) if named is None else named
-        return decode(self, rotations, translations=translations, expressions=weights, dtype=element)
+        return decode(self, PoseWindow(rotations, translations, weights), dtype=element)
 
     @property
     def expressions(self) -> tuple[str, ...]:

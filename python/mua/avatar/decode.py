@@ -1,7 +1,6 @@
 """From an avatar and a window of poses to posed splats, by the reference kernels."""
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -58,38 +57,33 @@ class Unposed:
     outside: float  # share of the pose that training did not show (schemas/README.md, 3.7)
 
 
-def decode(
-    avatar: Model,
-    rotations: Array,  # [k, J, 4] local joint rotations, newest first
-    *,
-    translations: Array,  # [k, J, 3] local joint translations, metres
-    expressions: Array | None = None,  # [E] weights of the newest frame, 0 to 1; None: all 0
-    dtype: npt.DTypeLike = np.float32,
-) -> Splats:
+@dataclass(frozen=True, eq=False)
+class PoseWindow:
+    """Poses that a frame is decoded from, newest first."""
+
+    rotations: Array  # [k, J, 4] local joint rotations
+    translations: Array  # [k, J, 3] local joint translations, metres
+    expressions: Array | None = None  # [E] weights of the newest frame, 0 to 1; None: all 0
+
+
+def decode(avatar: Model, window: PoseWindow, *, dtype: npt.DTypeLike = np.float32) -> Splats:
     """Decode the newest frame of a window of poses; float64 gives the most exact reference."""
-    unposed = decode_unposed(avatar, rotations, translations=translations, expressions=expressions, dtype=dtype)
-    pose = Pose(rotations[0], translations[0])
+    unposed = decode_unposed(avatar, window, dtype=dtype)
+    pose = Pose(window.rotations[0], window.translations[0])
     splats = pose_splats(avatar.rig, unposed.mesh, texture=unposed.texture, pose=pose, bounds=avatar.bounds)
     return replace(splats, outside=unposed.outside)
 
 
-def decode_unposed(
-    avatar: Model,
-    rotations: Array,  # [k, J, 4] local joint rotations, newest first
-    *,
-    translations: Array,  # [k, J, 3] local joint translations, metres
-    expressions: Array | None = None,  # [E] weights of the newest frame, 0 to 1; None: all 0
-    dtype: npt.DTypeLike = np.float32,
-) -> Unposed:
+def decode_unposed(avatar: Model, window: PoseWindow, *, dtype: npt.DTypeLike = np.float32) -> Unposed:
     """Decode the newest frame of a window of poses in canonical space."""
-    descriptor = describe_window(avatar.rig.skeleton, avatar.encoding, rotations, translations)
+    descriptor = describe_window(avatar.rig.skeleton, avatar.encoding, window.rotations, window.translations)
     read, outside = read_components(avatar.components, descriptor)
     x = read.astype(dtype)
     canonical = expand_mesh(avatar, x)
     geometry = decode_branch(avatar.geometry, avatar.wavelet, x, texels=avatar.rig.texels.texels)
     appearance = decode_branch(avatar.appearance, avatar.wavelet, x, texels=avatar.rig.texels.texels)
     texture = np.concatenate([geometry, appearance]).T
-    canonical, texture = express(avatar.rig, canonical, texture=texture, weights=expressions)
+    canonical, texture = express(avatar.rig, canonical, texture=texture, weights=window.expressions)
     return Unposed(canonical, texture, float(outside))
 
 
@@ -101,7 +95,7 @@ def decode_clip_frame(
     dtype: npt.DTypeLike = np.float32,
 ) -> Splats:
     """Decode one frame of a clip; before its first frame, the clip stands still."""
-    return decode(avatar, **_window(avatar, clip, frame), dtype=dtype)
+    return decode(avatar, _window(avatar, clip, frame), dtype=dtype)
 
 
 def unposed_clip_frame(
@@ -111,14 +105,14 @@ def unposed_clip_frame(
     frame: int,  # at the rate of the avatar's encoding
 ) -> Unposed:
     """One frame of a clip as `decode_clip_frame` decodes it, in canonical space."""
-    return decode_unposed(avatar, **_window(avatar, clip, frame))
+    return decode_unposed(avatar, _window(avatar, clip, frame))
 
 
-def _window(avatar: Model, clip: Clip, frame: int) -> dict[str, Any]:
+def _window(avatar: Model, clip: Clip, frame: int) -> PoseWindow:
     """The poses, newest first, and the expressions that a frame of a clip is decoded from."""
     window = sample(clip, np.array(avatar.encoding.frames(frame)), rate=avatar.encoding.rate)
     weights = None if window.expressions is None else window.expressions[0]
-    return {"rotations": window.rotations, "translations": window.translations, "expressions": weights}
+    return PoseWindow(window.rotations, window.translations, weights)
 
 
 def expand_mesh(

@@ -16,7 +16,7 @@ from torch import Tensor
 from mua.arrays import Array
 from mua.asset.read import read
 from mua.avatar.camera import Camera
-from mua.avatar.decode import Splats, decode, pose_splats
+from mua.avatar.decode import PoseWindow, Splats, decode, pose_splats
 from mua.avatar.rendering import to_bytes
 from mua.capture import Capture
 from mua.capture.view import View
@@ -135,7 +135,7 @@ def avatar_entry(path: Path, template: Skeleton) -> FilmedEntry:
 
     def show(clip: Clip, frame: int) -> Splats:
         poses = window_of(clip, frame, avatar.encoding)
-        return decode(avatar, poses.rotations, translations=poses.translations)
+        return decode(avatar, PoseWindow(poses.rotations, poses.translations))
 
     return FilmedEntry(path.stem, show, file_cost(path, avatar))
 

@@ -12,7 +12,7 @@ from mua.avatar.camera import Camera, orbit
 from mua.avatar.decode import pose_splats
 from mua.fidelity.canvas import opened
 from mua.fidelity.faces import FaceFidelity, compare_faces
-from mua.fidelity.measure import Agreement, agreement, together, worst_place
+from mua.fidelity.measure import Agreement, Pair, agreement, together, worst_place
 from mua.fidelity.painter import Painter
 from mua.fidelity.posing import Moment, Poser, dominant_joints, skinned
 from mua.fidelity.splats import SplatPainter
@@ -30,13 +30,10 @@ IN_MOTION = ("front, right", -40.0), ("back, left", 140.0)  # one side for each 
 
 
 @dataclass(frozen=True, eq=False)
-class Shot:
-    """One pose from one side, drawn twice."""
+class Shot(Pair):
+    """One pose from one side."""
 
     view: str
-    source: Array  # [H, W, 4] premultiplied sRGB and alpha
-    splats: Array  # [H, W, 4]
-    agreement: Agreement
     place: tuple[int, int]  # column and row of the worst place
     joint: str  # joint of the source that carries the surface nearest to it
     difference: float  # mean difference there, in 0..1
@@ -135,7 +132,7 @@ class _Studio:
             source, splats = self._paint_source(places, camera), self._paint_splats(frame, camera)
             column, row, difference = worst_place(source, splats)
             joint = self._joint_at(np.concatenate(places), camera, (column, row))
-            shots.append(Shot(view, source, splats, agreement(source, splats), (column, row), joint, difference))
+            shots.append(Shot(source, splats, agreement(source, splats), view, (column, row), joint, difference))
         return PoseFidelity(moment.name, tuple(shots))
 
     def _joint_at(self, points: Array, camera: Camera, place: tuple[int, int]) -> str:

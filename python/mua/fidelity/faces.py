@@ -8,7 +8,7 @@ import numpy as np
 from mua.arrays import Array
 from mua.avatar.camera import orbit
 from mua.avatar.decode import Splats, express, pose_splats
-from mua.fidelity.measure import Agreement, agreement
+from mua.fidelity.measure import Pair, agreement
 from mua.fidelity.painter import Painter
 from mua.fidelity.posing import Moment, skinned
 from mua.fidelity.splats import SplatPainter
@@ -23,13 +23,10 @@ AWAY = float(np.radians(15))  # of the view from the front, so that depth shows
 
 
 @dataclass(frozen=True, eq=False)
-class ExpressionShot:
-    """A face in one expression, drawn twice."""
+class ExpressionShot(Pair):
+    """A face in one expression."""
 
     name: str
-    source: Array  # [H, W, 4] premultiplied sRGB and alpha
-    splats: Array  # [H, W, 4]
-    agreement: Agreement
 
 
 @dataclass(frozen=True)
@@ -64,7 +61,7 @@ def compare_faces(
         places = [skinned(scene, _with_target(part, name), rest.nodes) for part in scene.parts]
         mesh, texture = express(teacher.rig, still.mesh, texture=still.texture, weights=weights)
         drawn = paint_source(places, camera), paint_splats(_posed(teacher, mesh, texture, rest), camera)
-        shots.append(ExpressionShot(name or AT_REST, *drawn, agreement(*drawn)))
+        shots.append(ExpressionShot(*drawn, agreement(*drawn), name or AT_REST))
     return FaceFidelity(shots[0], tuple(shots[1:]))
 
 

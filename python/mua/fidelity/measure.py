@@ -36,6 +36,15 @@ class Agreement:
         return float(-10 * np.log10(max(self.squares / (3 * self.common), 10 ** (-MOST_DECIBELS / 10))))
 
 
+@dataclass(frozen=True, eq=False)
+class Pair:
+    """The source and its splats, drawn alike."""
+
+    source: Array  # [H, W, 4] premultiplied sRGB and alpha
+    splats: Array  # [H, W, 4]
+    agreement: Agreement
+
+
 def agreement(
     source: Array,  # [H, W, 4] premultiplied sRGB and alpha
     splats: Array,  # [H, W, 4]

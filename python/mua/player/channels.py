@@ -118,6 +118,7 @@ class ChannelDecoder:
     def _express(self, commands: Commands, channels: ChannelSet) -> None:
         """Move the vertices of expressions, and bend the texels in reach."""
         targets, level = self.avatar.expressions, channels.level
+        moving = {"moved": self.moved, "mesh": channels.mesh}
         commands.dispatch(
             self._sum_targets,
             (groups(targets.vertex_count, EXPRESSED), 1, 1),
@@ -127,21 +128,14 @@ class ChannelDecoder:
                 "expressions": targets.expressions,
                 "offsets": targets.offsets,
                 "weights": channels.weights,
-                "moved": self.moved,
-                "mesh": channels.mesh,
+                **moving,
             },
             vertex_count=targets.vertex_count,
         )
         commands.dispatch(
             self._bend_triangles,
             (groups(targets.triangle_count, EXPRESSED), 1, 1),
-            {
-                "triangles": targets.triangles,
-                "faces": level.places.faces,
-                "moved": self.moved,
-                "mesh": channels.mesh,
-                "bends": self.bends,
-            },
+            {"triangles": targets.triangles, "faces": level.places.faces, "bends": self.bends, **moving},
             triangle_count=targets.triangle_count,
         )
         commands.dispatch(
