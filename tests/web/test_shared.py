@@ -210,6 +210,15 @@ def test_what_is_loaded_on_demand_is_small(roots: list[str], largest: int) -> No
     assert 0 < compressed(needed(*roots) - needed(*FIRST)) < largest
 
 
+def test_what_cannot_be_fetched_on_demand_is_a_sentence_and_the_splats_stay(
+    opened: Open, folder: dict[str, Content]
+) -> None:
+    page = opened({name: content for name, content in folder.items() if name != "anatomy.js"})
+    page.evaluate(f"{ELEMENT}.show = 'splats,geometry,shadow'")
+    page.wait(f"{SENTENCE}.includes('Geometry and skeleton cannot be shown')")
+    assert page.evaluate(f"{ELEMENT}.show") == "splats,shadow"
+
+
 def extent(alpha: Array) -> Array:
     """First and last row and column [2, 2] in which anything shows."""
     places = np.argwhere(alpha > 0.1)
