@@ -2,15 +2,14 @@
 
 import json
 import re
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from gltf_files import Glb
-from people import chain, person, walk, with_fingers
-from pose import test_joint_names as named
+from named_figures import written_names
+from people import moving, person
 from shared_data import SharedData
 from web.test_modules import node, pytestmark  # noqa: F401  needs Node
 
@@ -90,18 +89,6 @@ def test_real_motion_is_retargeted_as_the_package_does(
     assert_same(found, loaded.clip)
     assert found["name"] == path.stem
     assert set(found["notes"]) <= {*loaded.notes, *(note.removeprefix(f"{path.name}: ") for note in loaded.notes)}
-
-
-def moving(skeleton: Skeleton) -> Clip:
-    """A walk in which the left arm is raised at the first frame and the right one at the last."""
-    clip = walk(skeleton)
-    rotations = clip.rotations.copy()
-    share = np.linspace(1, 0, len(clip))
-    for side, sign, raised in (("Left", 1, share), ("Right", -1, 1 - share)):
-        turn = rotation.from_axis_angle(np.array([0.0, 0, sign]), 1.2 * raised)
-        joint = skeleton.names.index(f"{side}Arm")
-        rotations[:, joint] = rotation.multiply(turn, rotations[:, joint])
-    return replace(clip, rotations=rotations)
 
 
 def animated(skeleton: Skeleton, clip: Clip, names: dict[str, str] | None = None) -> Glb:
@@ -339,30 +326,8 @@ def test_a_gltf_file_that_is_wrong_is_a_sentence(
     assert re.search(message, found), found
 
 
-def written_names() -> list[Skeleton]:
-    """Skeletons by whose names the package's own tests know limbs, trunks and what is none, and whole rigs."""
-
-    def cases(test: Any) -> list[Any]:
-        return list(test.pytestmark[0].args[1])
-
-    people = [person(), with_fingers(person())]
-    owned = [replace(one, names=tuple(f"Unity_{name}" for name in one.names)) for one in people]
-    return [
-        *(chain("Hips", *names) for names, _ in cases(named.test_knows_limbs_by_many_names)),
-        *(chain("Hips", name) for name in cases(named.test_does_not_guess)),
-        *(chain(*names) for names in cases(named.test_knows_trunks_by_many_names)),
-        *people,
-        *owned,
-        chain("a"),
-    ]
-
-
 def test_joints_are_known_by_the_names_that_the_package_knows(tmp_path: Path) -> None:
     skeletons = written_names()
-    owned = [
-        replace(one, names=tuple(f"Unity_{name}" for name in one.names)) for one in (person(), with_fingers(person()))
-    ]
-    skeletons += owned
     file = tmp_path / "skeletons.json"
     file.write_text(
         json.dumps([{"names": s.names, "parents": s.parents.tolist(), "root": s.root} for s in skeletons]),

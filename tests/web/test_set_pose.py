@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from people import person
+from people import moving, person
 from shared_data import SharedData
 from synthetic_avatar import synthetic_avatar, with_surface
 from web.browser import Browser, Page, Serve
 from web.conftest import PLAIN
 from web.engine import LEAST_PSNR, Open, desktop, load, opened, psnr, screenshot, small
-from web.test_page_retarget import ANGLE, ROOM, animated, moving, vrma
+from web.test_page_retarget import ANGLE, ROOM, animated, vrma
 
 from mua.arrays import Array
 from mua.asset.avatar import Avatar

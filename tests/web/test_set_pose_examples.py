@@ -5,10 +5,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from people import person
+from people import moving, person
 from web.browser import Page
 from web.pages import ELEMENT
-from web.test_page_retarget import animated, moving
+from web.test_page_retarget import animated
 from web.test_set_pose import on_person
 from web.test_shared import EXAMPLES, THREE, Open, opened
 

@@ -1,4 +1,5 @@
 using System;
+using System.Collections.Generic;
 
 namespace Mua.Format
 {
@@ -27,7 +28,8 @@ namespace Mua.Format
 
         public int JointCount => Parents.Length;
 
-        internal Skeleton(string[] names, int[] parents, double[] bindRotations, double[] bindTranslations, int root)
+        /// <summary>A skeleton of these arrays, parents first, which it keeps.</summary>
+        public Skeleton(string[] names, int[] parents, double[] bindRotations, double[] bindTranslations, int root)
         {
             Names = names;
             Parents = parents;
@@ -36,6 +38,15 @@ namespace Mua.Format
             Root = root;
             BindInverse = new double[8 * parents.Length];
             InvertBind();
+        }
+
+        /// <summary>The joints above one, nearest first.</summary>
+        public IEnumerable<int> Ancestors(int joint)
+        {
+            for (int above = Parents[joint]; above >= 0; above = Parents[above])
+            {
+                yield return above;
+            }
         }
 
         /// <summary>
