@@ -10,7 +10,7 @@ namespace Mua
     /// Transforms that carry an avatar's pose, whoever moves them: an Animator, physics, a script. They are found by the
     /// joints' names and must have the bind orientations of the avatar's skeleton, as the rig that it was made from.
     /// </summary>
-    internal sealed class AvatarJoints
+    internal sealed class AvatarJoints : IPosingRig
     {
         private const int Named = 3; // missing joints in a message
 
@@ -40,15 +40,14 @@ namespace Mua
             {
                 throw new InvalidOperationException(
                     "no active GameObject below " + root.name + " is named " + skeleton.Names[skeleton.Root]
-                    + ", the avatar's root joint; assign the root of the rig that the avatar was baked from.");
+                    + ", the avatar's root joint; assign the root of the rig that the avatar was baked from, or add MUA > Retargeted Rig"
+                    + " to that of another.");
             }
             Missing = found == joints.Length ? "" : DescribeMissing(joints.Length - found);
         }
 
-        /// <summary>A sentence about joints that keep their bind pose, or nothing.</summary>
         public string Missing { get; }
 
-        /// <summary>Whether the transforms are still there.</summary>
         public bool Alive => root != null && joints[skeleton.Root] != null;
 
         /// <summary>Local rotations [J, 4] and translations [J, 3], metres, of this moment.</summary>
@@ -80,6 +79,11 @@ namespace Mua
                 offset.Store(translations, joint);
                 (start + above.Rotate(offset)).Store(placed, joint);
             }
+        }
+
+        public float Weight(int expression)
+        {
+            return 0;
         }
 
         private int Find()

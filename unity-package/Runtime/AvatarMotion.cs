@@ -8,7 +8,7 @@ namespace Mua
     internal sealed class AvatarMotion
     {
         private readonly AvatarFile avatar;
-        private AvatarJoints joints; // null where a clip gives the pose
+        private IPosingRig joints; // null where a clip gives the pose
         private AvatarFace face; // null where no mesh sets expressions
 
         public AvatarMotion(AvatarFile avatar)
@@ -34,7 +34,9 @@ namespace Mua
             }
             try
             {
-                joints = new AvatarJoints(avatar.Skeleton, root);
+                joints = root.TryGetComponent(out RetargetedRig other)
+                    ? (IPosingRig)new RetargetedJoints(avatar.Skeleton, other)
+                    : new AvatarJoints(avatar.Skeleton, root);
                 return joints.Missing;
             }
             catch (InvalidOperationException error)

@@ -29,12 +29,13 @@ namespace Mua
         private readonly double[] next; // [J, 4]
         private readonly double[] nextTranslations; // [J, 3]
         private readonly float[] weights; // [E] of the window
-        private ClipSampler clip; // of the window; null where it is of transforms
+        private ClipSampler clip; // of the window; null where it is of a live source
+        private IPoseSource live; // null where a clip, or nothing, gives the pose
         private int index = -1; // frame of the clip
         private long first; // number of the first window of a motion
-        private double newest; // seconds; of the window's newest pose of transforms
-        private double sampled; // seconds; of the last sample of transforms
-        private int rested; // newest poses of the window that are the pose of transforms of this moment
+        private double newest; // seconds; of the window's newest pose of a live source
+        private double sampled; // seconds; of the last sample of a live source
+        private int rested; // newest poses of the window that are the live source's pose of this moment
         private double now, expressed = double.NegativeInfinity; // seconds; since when weights have waited for a frame
         private long known; // window at the last Express
         private bool started;
@@ -118,6 +119,7 @@ namespace Mua
             skeleton.BindTranslations.CopyTo(currentTranslations, 0);
             Fill();
             clip = null;
+            live = null;
             isHeld = true;
         }
 
@@ -134,6 +136,7 @@ namespace Mua
             {
                 first += Windows;
                 clip = source;
+                live = null;
                 index = -1;
             }
             if (frame != index)
@@ -160,7 +163,7 @@ namespace Mua
         }
 
         /// <summary>
-        /// Takes a window, Due or Following, where it is not taken; one of transforms is there already. Weights that were set
+        /// Takes a window, Due or Following, where it is not taken; one of a live source is there already. Weights that were set
         /// are those of this moment.
         /// </summary>
         public void ReadWindow(long number)
@@ -175,7 +178,9 @@ namespace Mua
         public float Weight(int expression)
         {
             float set = Expressions.Get(expression);
-            return float.IsNaN(set) ? clip == null ? 0 : clip.ReadExpression(index, expression) : set;
+            return !float.IsNaN(set) ? set
+                : clip != null ? clip.ReadExpression(index, expression)
+                : live != null ? live.Weight(expression) : 0;
         }
 
         /// <summary>
@@ -200,12 +205,12 @@ namespace Mua
         }
 
         /// <summary>
-        /// The transforms as they are at a time; the window takes one pose in each frame of the avatar's rate. Whether the
+        /// A live source as it is at a time; the window takes one pose in each frame of the avatar's rate. Whether the
         /// pose is another than before; where it fills the whole window already, that stays as it is.
         /// </summary>
-        public bool Sample(AvatarJoints joints, double seconds)
+        public bool Sample(IPoseSource source, double seconds)
         {
-            joints.Read(next, nextTranslations);
+            source.Read(next, nextTranslations);
             bool isSame = started && Equal(next, current) && Equal(nextTranslations, currentTranslations);
             next.CopyTo(current, 0);
             nextTranslations.CopyTo(currentTranslations, 0);
@@ -228,19 +233,21 @@ namespace Mua
                 newest += Math.Floor(age + FrameSlack) / rate;
             }
             clip = null;
+            live = source;
             isHeld = false;
             return !isSame;
         }
 
         private void ReadWeights(int frame)
         {
-            if (clip == null)
-            {
-                Array.Clear(weights, 0, weights.Length);
-            }
-            else
+            if (clip != null)
             {
                 clip.ReadExpressions(frame, weights);
+                return;
+            }
+            for (int i = 0; i < weights.Length; i++)
+            {
+                weights[i] = live == null ? 0 : live.Weight(i);
             }
         }
 

@@ -79,6 +79,13 @@ namespace Mua.Motion
             place.Place(rotations, translations, place.Sources.Length == 0 ? new Vector3D() : Gone(placed));
         }
 
+        /// <summary>The role of a bone of Unity's HumanBodyBones, by its name; null for one that has none, as an eye.</summary>
+        public static string HumanoidRole(string bone)
+        {
+            string own = char.ToLowerInvariant(bone[0]) + bone.Substring(1);
+            return JointWords.Humanoid.TryGetValue(own, out string role) ? role : null;
+        }
+
         private Vector3D Gone(ReadOnlySpan<double> placed)
         {
             Vector3D gone = facing.Rotate(BodyPlace.Middle(placed, place.Sources)) - hipsAtRest;

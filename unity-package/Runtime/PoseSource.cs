@@ -1,0 +1,24 @@
+using System;
+
+namespace Mua
+{
+    /// <summary>Poses of this moment, whatever makes them.</summary>
+    internal interface IPoseSource
+    {
+        /// <summary>Writes local rotations [J, 4] and translations [J, 3], metres.</summary>
+        void Read(Span<double> rotations, Span<double> translations);
+
+        /// <summary>The weight of one of the avatar's expressions.</summary>
+        float Weight(int expression);
+    }
+
+    /// <summary>Transforms that pose an avatar.</summary>
+    internal interface IPosingRig : IPoseSource
+    {
+        /// <summary>A sentence about joints that keep their bind pose, or nothing.</summary>
+        string Missing { get; }
+
+        /// <summary>Whether the transforms are still there.</summary>
+        bool Alive { get; }
+    }
+}
