@@ -19,6 +19,7 @@ UNITY = {
     "Unity.RenderPipelines.Universal.Editor": "com.unity.render-pipelines.universal",
     "Unity.InputSystem": "com.unity.inputsystem",
     "Unity.TextMeshPro": "com.unity.ugui",
+    "Unity.Timeline": "com.unity.timeline",
     "UnityEngine.UI": "com.unity.ugui",
     "Unity.XR.CoreUtils": "com.unity.xr.core-utils",
     "Unity.XR.MetaOpenXR": "com.unity.xr.meta-openxr",

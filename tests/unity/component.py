@@ -5,7 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from csharp import PROGRAMS, ROOT, CSharp, by_name
+from csharp import PROGRAMS, ROOT, RUNTIME, CSharp, by_name
 from synthetic_avatar import synthetic_avatar, with_surface
 
 from mua.asset import write
@@ -21,9 +21,11 @@ Story = Callable[..., Reports]
 
 
 def build_program(csharp: CSharp) -> Path:
-    """programs/Component*.cs with the package's runtime."""
+    """programs/Component*.cs with the package's runtime and its Timeline track."""
     programs = sorted(PROGRAMS.glob("Component*.cs"))
-    return csharp.runtime(PROGRAMS / "shared", *programs, name="ComponentProgram")
+    return csharp.runtime(
+        RUNTIME / "Timeline", PROGRAMS / "shared", *programs, name="ComponentProgram", references=[csharp.timeline()]
+    )
 
 
 def write_avatars(folder: Path) -> None:

@@ -54,6 +54,12 @@ class CSharp:
         """The stand-ins of the engine."""
         return self.build([STAND_INS / "UnityEngine"], library=True, name="UnityEngine")
 
+    def timeline(self) -> Path:
+        """The stand-ins of com.unity.timeline."""
+        return self.build(
+            [STAND_INS / "Unity.Timeline"], library=True, name="Unity.Timeline", references=[self.engine()]
+        )
+
     def runtime(
         self, *sources: Path, name: str = "", references: Sequence[Path] = (), defines: Sequence[str] = ()
     ) -> Path:

@@ -29,6 +29,7 @@ OPTIONAL = {
     "MUA_URP": "Unity.RenderPipelines.",
     "MUA_XR_MANAGEMENT": "Unity.XR.Management",
     "MUA_OPENXR": "Unity.XR.OpenXR",
+    "MUA_TIMELINE": "Unity.Timeline",
 }
 
 

@@ -1,6 +1,7 @@
 using System.Runtime.CompilerServices;
 
 [assembly: InternalsVisibleTo("Mua.Avatar.Urp")]
+[assembly: InternalsVisibleTo("Mua.Avatar.Timeline")]
 [assembly: InternalsVisibleTo("Mua.Avatar.Editor")]
 [assembly: InternalsVisibleTo("Mua.Avatar.SelfTest")]
 [assembly: InternalsVisibleTo("Mua.Avatar.Tests")]

@@ -14,13 +14,19 @@ namespace Mua
 
         private readonly ClipSampler[] clips;
         private readonly string[] names;
+        private readonly ClipBlend blend; // null for no avatar
         private int index;
         private double seconds;
         private double shown = double.NaN; // seconds of the pose that Sample gave last
+        private bool isDriven, isBlended; // by something else than the component
+        private double clock; // seconds of what drives a blend
+        private int ownIndex; // of what plays by itself, meanwhile
+        private double ownSeconds;
 
         public AvatarPlayback(AvatarFile avatar)
             : this(avatar.Clips.Length)
         {
+            blend = new ClipBlend(avatar.Skeleton);
             for (int i = 0; i < clips.Length; i++)
             {
                 clips[i] = new ClipSampler(avatar.Clips[i], avatar.Skeleton, avatar.Encoding.Rate);
@@ -69,9 +75,52 @@ namespace Mua
         /// <summary>Starts the clip with this name, or else the first; returns whether the name exists.</summary>
         public bool Choose(string name)
         {
-            int found = Array.IndexOf(names, name);
+            int found = Find(name);
             Index = Math.Max(found, 0);
             return found >= 0;
+        }
+
+        /// <summary>Index of the clip with this name; -1 for none.</summary>
+        public int Find(string name)
+        {
+            return Array.IndexOf(names, name);
+        }
+
+        /// <summary>Shows a moment of a clip until Release; the clip then goes on that played before.</summary>
+        public void Drive(int clip, double moment)
+        {
+            Take();
+            isBlended = false;
+            if (clip != index)
+            {
+                index = clip;
+                Forget();
+            }
+            Seconds = moment;
+        }
+
+        /// <summary>
+        /// Shows a moment of a clip that goes over into one of another, whose share is from 0 to 1, until Release; `now`: seconds
+        /// of a clock that runs along.
+        /// </summary>
+        public void Drive(int clip, double moment, int other, double otherMoment, double share, double now)
+        {
+            Drive(clip, moment);
+            isBlended = true;
+            clock = now;
+            blend.Set(clips[clip], moment, clips[other], otherMoment, share);
+        }
+
+        /// <summary>Lets the clip go on that played before Drive.</summary>
+        public void Release()
+        {
+            if (isDriven)
+            {
+                isDriven = isBlended = false;
+                index = ownIndex;
+                Seconds = ownSeconds;
+                Forget();
+            }
         }
 
         /// <summary>Makes the next Sample compute its pose anew.</summary>
@@ -83,15 +132,32 @@ namespace Mua
         /// <summary>Advances by so many seconds and poses the avatar; returns whether the pose has changed.</summary>
         public bool Sample(AvatarPose pose, double step)
         {
-            Seconds += step;
+            if (isBlended)
+            {
+                Forget();
+                return pose.Sample(blend, clock);
+            }
+            double from = isDriven && !double.IsNaN(shown) ? shown : Seconds;
+            Seconds += isDriven ? 0 : step;
             if (Seconds.Equals(shown))
             {
                 pose.Rest();
                 return false;
             }
-            pose.Sample(clips[index], Seconds, step);
+            pose.Sample(clips[index], Seconds, isDriven ? Seconds - from : step);
             shown = Seconds;
             return true;
+        }
+
+        /// <summary>Remembers what plays by itself.</summary>
+        private void Take()
+        {
+            if (!isDriven)
+            {
+                isDriven = true;
+                ownIndex = index;
+                ownSeconds = seconds;
+            }
         }
     }
 }

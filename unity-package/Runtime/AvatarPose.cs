@@ -149,7 +149,7 @@ namespace Mua
             startTranslations.CopyTo(currentTranslations, 0);
             if (position > frame && !isLast)
             {
-                Approach(position - frame);
+                PoseBlend.Approach(current, currentTranslations, next, nextTranslations, position - frame);
             }
             started = isHeld = MayLag = false;
             Due = first + frame;
@@ -248,17 +248,6 @@ namespace Mua
             for (int i = 0; i < weights.Length; i++)
             {
                 weights[i] = live == null ? 0 : live.Weight(i);
-            }
-        }
-
-        private void Approach(double t)
-        {
-            for (int joint = 0; joint < skeleton.JointCount; joint++)
-            {
-                QuaternionD a = QuaternionD.Load(current, joint), b = QuaternionD.Load(next, joint);
-                QuaternionD.Slerp(a, b, t).Store(current, joint);
-                Vector3D from = Vector3D.Load(currentTranslations, joint), to = Vector3D.Load(nextTranslations, joint);
-                (from + t * (to - from)).Store(currentTranslations, joint);
             }
         }
 

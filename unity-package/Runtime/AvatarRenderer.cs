@@ -4,60 +4,6 @@ using UnityEngine;
 
 namespace Mua
 {
-    /// <summary>What is drawn of an avatar.</summary>
-    [Flags]
-    public enum AvatarViews
-    {
-        None = 0,
-
-        /// <summary>The avatar itself.</summary>
-        Splats = 1,
-
-        /// <summary>The surface through the splats' centres, shaded.</summary>
-        Geometry = 2,
-
-        /// <summary>The template, the coarse mesh that the joints move, shaded.</summary>
-        Template = 4,
-
-        /// <summary>The bones.</summary>
-        Skeleton = 8,
-
-        /// <summary>The shadow of the template on other objects.</summary>
-        Shadow = 16,
-    }
-
-    /// <summary>How many texels of an avatar are shown.</summary>
-    public enum AvatarLevel
-    {
-        /// <summary>As many as can be distinguished at its distance, within the AvatarBudget if there is one.</summary>
-        Automatic,
-
-        /// <summary>All.</summary>
-        Full,
-
-        /// <summary>Half as many along a side, a quarter of the splats.</summary>
-        Half,
-
-        /// <summary>A quarter along a side, a sixteenth of the splats.</summary>
-        Quarter,
-    }
-
-    /// <summary>How far an AvatarRenderer is with its avatar.</summary>
-    public enum AvatarState
-    {
-        /// <summary>There is nothing to show.</summary>
-        Empty,
-
-        /// <summary>The file is read, checked and uploaded, a part in each frame.</summary>
-        Loading,
-
-        /// <summary>It is drawn.</summary>
-        Ready,
-
-        /// <summary>AvatarRenderer.Message says why it is not.</summary>
-        Failed,
-    }
-
     /// <summary>
     /// Shows an avatar where its GameObject stands: one of its own clips, or the pose of transforms that something else
     /// moves. The character faces the GameObject's forward axis, and follows a scale that is the same along all axes.
@@ -82,6 +28,12 @@ namespace Mua
         [SerializeField, Tooltip("Name of the clip to play; if empty, the first.")]
         private string clip = "";
 
+        [SerializeField, Tooltip("Whether the clip plays by itself; if not, it stays at Time.")]
+        private bool playing = true;
+
+        [SerializeField, Tooltip("Seconds into the clip at which it begins; an animation of this field moves the avatar through its clip.")]
+        private float time = 0;
+
         [SerializeField, Tooltip("Playback speed; 1 plays the clip at its recorded speed.")]
         private float speed = 1;
 
@@ -102,6 +54,8 @@ namespace Mua
         private byte[] given; // a file's bytes in place of avatar and file; not saved in the scene
         private string givenName = "";
         private bool isEdited; // the inspector has changed a field
+        private bool isBegun; // the clip, at Time
+        private float shownTime; // Time when it took effect
 
         /// <summary>The imported avatar that is shown; null where it came from a file.</summary>
         public AvatarAsset Avatar => avatar;
@@ -128,7 +82,11 @@ namespace Mua
         }
 
         /// <summary>Whether the clip plays; if not, it stays at Seconds.</summary>
-        public bool IsPlaying { get; set; } = true;
+        public bool IsPlaying
+        {
+            get => playing;
+            set => playing = value;
+        }
 
         /// <summary>Playback speed; 1 plays at the recorded speed.</summary>
         public float Speed
@@ -230,9 +188,10 @@ namespace Mua
         /// <summary>Name of the clip to begin with, as the inspector has it.</summary>
         internal string Clip => clip;
 
-        private AvatarExpressions Expressions => shown == null ? AvatarExpressions.None : shown.Expressions;
+        /// <summary>Its clips; none until the avatar is ready.</summary>
+        internal AvatarPlayback Playback => shown == null ? AvatarPlayback.None : shown.Playback;
 
-        private AvatarPlayback Playback => shown == null ? AvatarPlayback.None : shown.Playback;
+        private AvatarExpressions Expressions => shown == null ? AvatarExpressions.None : shown.Expressions;
 
         /// <summary>All AvatarRenderers of active GameObjects in the open scenes, in no order.</summary>
         internal static AvatarRenderer[] All()
@@ -335,12 +294,18 @@ namespace Mua
             {
                 Revise();
             }
-            shown?.Update();
+            Advance();
+        }
+
+        /// <summary>The engine calls it after an animation has changed fields.</summary>
+        private void OnDidApplyAnimationProperties()
+        {
+            TakeTime();
         }
 
         private void LateUpdate()
         {
-            shown?.Move(IsPlaying && Application.isPlaying ? Time.deltaTime * speed : 0);
+            shown?.Move(playing && Application.isPlaying ? Time.deltaTime * speed : 0);
         }
 
         /// <summary>Applies what the inspector changed.</summary>
@@ -355,7 +320,30 @@ namespace Mua
             else
             {
                 shown?.Revise();
+                TakeTime();
                 AvatarWorld.Refresh();
+            }
+        }
+
+        /// <summary>Loads on; a clip that is there begins at Time.</summary>
+        private void Advance()
+        {
+            shown?.Update();
+            if (!isBegun && State == AvatarState.Ready)
+            {
+                isBegun = true;
+                shownTime = 0;
+                TakeTime();
+            }
+        }
+
+        /// <summary>Goes to Time where that has changed.</summary>
+        private void TakeTime()
+        {
+            if (isBegun && time != shownTime)
+            {
+                shownTime = time;
+                Playback.Seconds = time;
             }
         }
 
@@ -370,9 +358,10 @@ namespace Mua
                 return;
             }
             shown = new AvatarInstance(this, Open);
+            isBegun = false;
             if (!Application.isPlaying)
             {
-                shown.Update();
+                Advance();
             }
         }
 

@@ -11,14 +11,4 @@ namespace Mua
         /// <summary>The weight of one of the avatar's expressions.</summary>
         float Weight(int expression);
     }
-
-    /// <summary>Transforms that pose an avatar.</summary>
-    internal interface IPosingRig : IPoseSource
-    {
-        /// <summary>A sentence about joints that keep their bind pose, or nothing.</summary>
-        string Missing { get; }
-
-        /// <summary>Whether the transforms are still there.</summary>
-        bool Alive { get; }
-    }
 }
