@@ -38,9 +38,19 @@ def test_overlapping_clips_go_over_into_each_other(told: Reports) -> None:
     blend, first, second = (np.array(line.split(), float).reshape(-1, 4) for line in (*told["blend"], *told["part"]))
     wanted = rotation.slerp(first, second, np.full(len(first), SHARE))
     np.testing.assert_allclose(np.abs(np.sum(blend * wanted, axis=-1)), 1, atol=BLENDED)
+    window, one, other = (
+        np.array(line.split(), float).reshape(-1, 4) for line in (*told["blend window"], *told["part window"])
+    )
+    wanted = rotation.slerp(one, other, np.full(len(one), SHARE))
+    np.testing.assert_allclose(np.abs(np.sum(window * wanted, axis=-1)), 1, atol=BLENDED)
     weights, before, after = (np.array(line.split(), float) for line in (*told["blend weights"], *told["part weights"]))
     np.testing.assert_allclose(weights, before + SHARE * (after - before), atol=ROUNDED)
     assert np.abs(np.sum(first * second, axis=-1)).min() < 1 - 1e-3  # the two differ
+
+
+def test_a_moment_looks_the_same_wherever_the_playhead_comes_from(told: Reports) -> None:
+    for part in ("", " window", " weights"):
+        assert told[f"again{part}"] == told[f"blend{part}"]
 
 
 def test_a_timeline_allocates_nothing(told: Reports) -> None:

@@ -81,6 +81,10 @@ namespace Mua
             }
         }
 
+        public void ReadWindow(Span<double> rotations, Span<double> translations)
+        {
+        }
+
         public float Weight(int expression)
         {
             return 0;

@@ -117,9 +117,9 @@ namespace Mua
             }
             skeleton.BindRotations.CopyTo(current, 0);
             skeleton.BindTranslations.CopyTo(currentTranslations, 0);
-            Fill();
             clip = null;
             live = null;
+            Fill();
             isHeld = true;
         }
 
@@ -210,7 +210,8 @@ namespace Mua
         /// </summary>
         public bool Sample(IPoseSource source, double seconds)
         {
-            source.Read(next, nextTranslations);
+            live = source;
+            live.Read(next, nextTranslations);
             bool isSame = started && Equal(next, current) && Equal(nextTranslations, currentTranslations);
             next.CopyTo(current, 0);
             nextTranslations.CopyTo(currentTranslations, 0);
@@ -233,7 +234,6 @@ namespace Mua
                 newest += Math.Floor(age + FrameSlack) / rate;
             }
             clip = null;
-            live = source;
             isHeld = false;
             return !isSame;
         }
@@ -258,6 +258,7 @@ namespace Mua
                 current.CopyTo(window, age * current.Length);
                 currentTranslations.CopyTo(windowTranslations, age * currentTranslations.Length);
             }
+            live?.ReadWindow(window, windowTranslations);
             rested = frames;
             started = true;
             first += Windows;
@@ -272,6 +273,7 @@ namespace Mua
             Array.Copy(windowTranslations, 0, windowTranslations, moved, windowTranslations.Length - moved);
             current.CopyTo(window, 0);
             currentTranslations.CopyTo(windowTranslations, 0);
+            live.ReadWindow(window, windowTranslations);
             rested++;
             Due = Following = Due + 1;
         }

@@ -37,6 +37,19 @@ namespace Mua
             PoseBlend.Approach(rotations, translations, other, otherTranslations, share);
         }
 
+        public void ReadWindow(Span<double> rotations, Span<double> translations)
+        {
+            int from = (int)first.Position(firstSeconds), to = (int)second.Position(secondSeconds), frames = rotations.Length / other.Length;
+            for (int age = 0; age < frames; age++)
+            {
+                Span<double> turns = rotations.Slice(age * other.Length, other.Length);
+                Span<double> moves = translations.Slice(age * otherTranslations.Length, otherTranslations.Length);
+                first.ReadFrame(Math.Max(from - age, 0), turns, moves);
+                second.ReadFrame(Math.Max(to - age, 0), other, otherTranslations);
+                PoseBlend.Approach(turns, moves, other, otherTranslations, share);
+            }
+        }
+
         public float Weight(int expression)
         {
             float from = first.ReadExpression((int)first.Position(firstSeconds), expression);

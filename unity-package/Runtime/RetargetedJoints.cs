@@ -20,7 +20,7 @@ namespace Mua
         {
             this.rig = rig;
             root = rig.transform;
-            rig.TryGetComponent(out Animator animator);
+            var animator = rig.GetComponentInChildren<Animator>();
             RigRest rest = rig.Rest;
             joints = rest.Joints;
             Skeleton source = rest.Skeleton(animator);
@@ -59,6 +59,10 @@ namespace Mua
             }
             retargeter.InPlace = rig != null && rig.InPlace;
             retargeter.Pose(turned, placed, rotations, translations);
+        }
+
+        public void ReadWindow(Span<double> rotations, Span<double> translations)
+        {
         }
 
         public float Weight(int expression)

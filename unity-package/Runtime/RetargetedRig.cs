@@ -27,8 +27,8 @@ namespace Mua
             set => inPlace = value;
         }
 
-        /// <summary>The rig at rest, where no humanoid avatar tells.</summary>
-        internal RigRest Rest => rest ?? (rest = new RigRest(transform));
+        /// <summary>The rig at rest, where no humanoid avatar tells: in an editor that does not play, as it stands now.</summary>
+        internal RigRest Rest => rest != null && Application.isPlaying ? rest : new RigRest(transform);
 
         /// <summary>By a joint of the avatar the joint of the rig that moves it.</summary>
         internal Dictionary<string, string> Mapping

@@ -72,6 +72,8 @@ namespace Mua
             graph.Evaluate(0.6, 0.75, 0.11, 0.25, 0.03);
             SayPose("blend", shown);
             SayParts(shown);
+            graph.Evaluate(0.6, 0.75, 0.11, 0.25, 0.03); // and once more, from elsewhere
+            SayPose("again", shown);
             graph.Evaluate(0.7, 0, 0, 0, 0); // between clips
             Say("gap", shown.ClipIndex + " " + (Math.Abs(shown.Seconds - own - Step) < 1e-6));
             graph.Evaluate(0.8, 1, 0.1, 0, 0);
@@ -96,7 +98,10 @@ namespace Mua
 
         private static void SayPose(string name, AvatarRenderer shown)
         {
-            Say(name, string.Join(" ", Current(shown).Current.ToArray()));
+            AvatarPose pose = Current(shown);
+            pose.ReadWindow(pose.Due);
+            Say(name, string.Join(" ", pose.Current.ToArray()));
+            Say(name + " window", string.Join(" ", pose.Window.ToArray()));
             Say(name + " weights", string.Join(" ", shown.ExpressionNames.Select(shown.GetExpression)));
         }
 

@@ -153,7 +153,7 @@ namespace Mua.Motion
         /// <summary>Between the palms of both, by where fingers begin, whichever way a rest pose holds them.</summary>
         private QuaternionD? PalmTurn(string side)
         {
-            BothPlaces?[] at = { rest.Places(side + "hand"), rest.Places(side + "index"), rest.Places(side + "middle"), rest.Places(side + "pinky") };
+            BothPlaces?[] at = new[] { "hand", "index", "middle", "pinky" }.Select(part => rest.Places(side + part)).ToArray();
             if (at.Any(places => places == null))
             {
                 return null;
