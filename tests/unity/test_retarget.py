@@ -9,7 +9,7 @@ import pytest
 from csharp import PROGRAMS, RUNTIME, CSharp, by_name
 from named_figures import written_names
 from people import moving, person, random_clip, upright, walk, with_fingers
-from retargeted import expected
+from retargeted import SECONDS, expected
 from shared_data import SharedData
 
 from mua import rotation
@@ -23,6 +23,8 @@ from mua.pose.skeleton import Skeleton
 
 # Some hundred operations on numbers up to 10, which a chain of joints passes on; divided by bones of at least 1 cm.
 BOUND = 1e5 * np.finfo(float).eps
+ROOT = np.eye(len(person().names))[:, :1]  # 1 for the root joint
+NEAR = 0.05  # metres by which the lower foot of a walk leaves the floor
 STEP = 0.2  # metres, at least: how far the walks go
 
 
@@ -62,6 +64,7 @@ class Figure:
     ) -> dict[str, list[str]]:
         turned, at = source.world(clip.rotations, clip.translations)
         lines = [*written("source", source), *written("target", target), *more]
+        lines.append(("rate", clip.rate))
         lines += [("map", joint, by) for joint, by in (mapping or {}).items()]
         for name, values in (("turned", turned), ("placed", at)):
             lines += [(name, *frame.ravel().tolist()) for frame in values]
@@ -105,9 +108,15 @@ def turned_about(skeleton: Skeleton, degrees: float) -> Skeleton:
     return replace(skeleton, bind_rotations=rotations, bind_translations=translations)
 
 
+def about_the_hips(skeleton: Skeleton) -> Skeleton:
+    """The same figure, whose hips are at the origin at rest, as in motion capture."""
+    return replace(skeleton, bind_translations=skeleton.bind_translations - skeleton.bind_translations[0] * ROOT)
+
+
 PAIRS = {
     "smaller, in A-pose, other axes": (person(size=1.2), person(arms_down=45, size=0.8, axes=2)),
     "larger, in T-pose, fingers": (with_fingers(person(arms_down=50)), with_fingers(person(size=1.5))),
+    "at rest about the hips": (about_the_hips(person(size=1.2)), person(size=0.8, axes=4)),
     "legs apart, facing back": (turned_about(person(legs_apart=15), 180), person(axes=3)),
 }
 
@@ -168,6 +177,19 @@ def test_the_path_is_scaled_to_the_legs(figure: Figure) -> None:
     found = figure.poses(source, target, clip)[1][:, target.root]
     gone = source.world(clip.rotations, clip.translations)[1][:, source.root]
     np.testing.assert_allclose(found[-1] - found[0], (gone[-1] - gone[0]) * 0.8 / 1.2, atol=BOUND)
+
+
+def test_feet_stand_where_the_rest_pose_does_not_tell_the_floor(figure: Figure) -> None:
+    """A walk that lasts longer than heights are remembered, of a figure that rests about its hips and walks high up."""
+    source, target = PAIRS["at rest about the hips"]
+    clip = walk(source, frames=SECONDS * 30 + 90)
+    clip = replace(clip, translations=clip.translations + 3 * ROOT * np.array([0, 1.0, 0]))
+    found = figure.poses(source, target, clip)
+    assert_same(found, expected(SourceMotion(source, clip), target))
+    feet = [target.names.index(f"{side}{part}") for side in ("Left", "Right") for part in ("Foot", "ToeBase")]
+    _, rest = target.world(target.bind_rotations, target.bind_translations)
+    heights = (target.world(*found)[1][:, feet, 1] - rest[feet, 1]).min(axis=1)
+    assert np.abs(heights).max() < NEAR
 
 
 def test_roles_that_the_rig_states_need_no_names(figure: Figure) -> None:

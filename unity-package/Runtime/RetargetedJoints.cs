@@ -58,7 +58,7 @@ namespace Mua
                 }
             }
             retargeter.InPlace = rig != null && rig.InPlace;
-            retargeter.Pose(turned, placed, rotations, translations);
+            retargeter.Pose(turned, placed, Time.timeAsDouble, rotations, translations);
         }
 
         public void ReadWindow(Span<double> rotations, Span<double> translations)

@@ -61,16 +61,17 @@ namespace Mua.Motion
             var rotations = new double[4 * joints];
             var translations = new double[3 * joints];
             double[][] turned = All(lines, "turned"), placed = All(lines, "placed");
+            double rate = All(lines, "rate")[0][0];
             for (int frame = 0; frame < turned.Length; frame++)
             {
-                retargeter.Pose(turned[frame], placed[frame], rotations, translations);
+                retargeter.Pose(turned[frame], placed[frame], frame / rate, rotations, translations);
                 Print("rotations", rotations);
                 Print("translations", translations);
             }
             long before = GC.GetAllocatedBytesForCurrentThread();
             for (int i = 0; i < Repeats; i++)
             {
-                retargeter.Pose(turned[i % turned.Length], placed[i % turned.Length], rotations, translations);
+                retargeter.Pose(turned[i % turned.Length], placed[i % turned.Length], i / rate, rotations, translations);
             }
             Console.WriteLine("allocated\t" + (GC.GetAllocatedBytesForCurrentThread() - before));
         }

@@ -18,8 +18,12 @@ namespace Mua.Motion
                 new[] { side + " shin", side + " thigh" }, new[] { side + " foot", side + " shin" },
             })).ToArray();
 
+        private const double OnFloor = 0.1; // of the height: a rest pose whose lowest joint is this near to 0 stands on the floor
+
         private readonly RestPoses rest;
         private readonly Skeleton target;
+        private readonly int[] soles; // of the avatar
+        private readonly double floor; // of the avatar at rest
         private readonly int[] hips; // of the avatar: where both legs begin, else the hips alone
         private readonly int mover; // whose translation moves the whole body
         private readonly KeyValuePair<int, int>[] detached, attached; // joint and what carries it in a body
@@ -37,6 +41,10 @@ namespace Mua.Motion
             Sources = hips.Select(joint => rest.Matches.First[joint]).ToArray();
             int top = rest.Matches.Roles["hips"][0];
             mover = target.Ancestors(target.Root).Contains(top) ? top : target.Root;
+            soles = JointNames.Sides.SelectMany(side => new[] { rest.Joint(side + " foot"), rest.Joint(side + " toe") })
+                .Where(joint => joint >= 0).ToArray();
+            floor = FloorOf(Enumerable.Range(0, target.JointCount).Select(joint => Vector3D.Load(rest.TargetAt, joint).Y));
+            KnowsFloor = soles.Length == 0 || FloorOf(rest.SourcePlaces().Values.Select(at => at.Y)) == 0;
             scale = LegScale();
             detached = FindDetached().ToArray();
             attached = FindAttached().ToArray();
@@ -44,6 +52,9 @@ namespace Mua.Motion
 
         /// <summary>Joints of the other figure whose middle its hips are; none where nothing moves the avatar's.</summary>
         public int[] Sources { get; }
+
+        /// <summary>Whether the other figure stands on its floor at rest, or the avatar has no feet to stand on.</summary>
+        public bool KnowsFloor { get; }
 
         /// <summary>Turns detached joints with the trunk. rotations: [T, 4] local; world: [T, 4] of the joints that are led.</summary>
         public void Turn(Span<double> rotations, ReadOnlySpan<double> world)
@@ -59,9 +70,9 @@ namespace Mua.Motion
 
         /// <summary>
         /// Writes local translations [T, 3] of a pose of local rotations [T, 4] whose hips have gone as far as those of the other
-        /// figure, by `gone` metres of its own since it was at rest.
+        /// figure, by `gone` metres of its own since it was at rest, and then up by `lift` metres.
         /// </summary>
-        public void Place(ReadOnlySpan<double> rotations, Span<double> translations, Vector3D gone)
+        public void Place(ReadOnlySpan<double> rotations, Span<double> translations, Vector3D gone, double lift = 0)
         {
             target.BindTranslations.CopyTo(translations);
             Attach(rotations, translations);
@@ -70,13 +81,25 @@ namespace Mua.Motion
                 return;
             }
             target.World(rotations, translations, turned, placed);
-            Vector3D shift = Middle(rest.TargetAt, hips) + scale * gone - Middle(placed, hips);
+            Vector3D shift = Middle(rest.TargetAt, hips) + scale * gone + lift * Directions.Y - Middle(placed, hips);
             target.BindTranslations.CopyTo(translations);
             int parent = target.Parents[mover];
             QuaternionD above = parent < 0 ? QuaternionD.Identity : QuaternionD.Load(turned, parent);
             Vector3D moved = Vector3D.Load(translations, mover) + above.Conjugate.Rotate(shift);
             moved.Store(translations, mover);
             Attach(rotations, translations);
+        }
+
+        /// <summary>How high above the floor the lower foot of a pose is, as at rest.</summary>
+        public double FootHeight(ReadOnlySpan<double> rotations, ReadOnlySpan<double> translations)
+        {
+            target.World(rotations, translations, turned, placed);
+            double lowest = double.PositiveInfinity;
+            foreach (int joint in soles)
+            {
+                lowest = Math.Min(lowest, Vector3D.Load(placed, joint).Y - Vector3D.Load(rest.TargetAt, joint).Y);
+            }
+            return lowest + floor;
         }
 
         /// <summary>The middle of some joints' places.</summary>
@@ -177,6 +200,13 @@ namespace Mua.Motion
                     Add(new BothPlaces(own, to - from), ref ours, ref theirs);
                 }
             }
+        }
+
+        /// <summary>Height of the floor that joints of these heights stand on: 0 where the lowest is near to it.</summary>
+        private static double FloorOf(IEnumerable<double> heights)
+        {
+            double low = heights.Min(), high = heights.Max();
+            return Math.Abs(low) < OnFloor * (high - low) ? 0 : low;
         }
 
         private static void Add(BothPlaces bone, ref double ours, ref double theirs)

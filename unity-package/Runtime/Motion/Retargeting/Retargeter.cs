@@ -7,12 +7,14 @@ namespace Mua.Motion
 {
     /// <summary>
     /// Puts poses of another figure onto an avatar as they come, by what every bone does in the world: the rotations of
-    /// python/mua/motion/retarget.py for a figure that stands at rest. The path of the hips is scaled to the avatar's legs.
+    /// python/mua/motion/retarget.py for a figure that stands at rest. The path of the hips is scaled to the avatar's legs; where
+    /// the figure does not stand on its floor at rest, the avatar's height follows its feet, as in python/mua/live/posing.py.
     /// </summary>
     public sealed class Retargeter
     {
         private readonly RestPoses rest;
         private readonly BodyPlace place;
+        private readonly Footing footing; // null where the figure stands on its floor at rest
         private readonly QuaternionD facing; // from where the figure faces at rest to where the avatar does
         private readonly Vector3D hipsAtRest; // of the figure, turned to face as the avatar does
         private readonly QuaternionD[] bound; // [T] of joints that something moves
@@ -35,6 +37,7 @@ namespace Mua.Motion
             }
             var alignment = new RestAlignment(rest);
             place = new BodyPlace(rest);
+            footing = place.KnowsFloor ? null : new Footing();
             facing = Descriptor.HeadingOf(alignment.Body).Conjugate;
             hipsAtRest = place.Sources.Length == 0
                 ? new Vector3D()
@@ -56,10 +59,11 @@ namespace Mua.Motion
 
         /// <summary>
         /// From the figure's joints in the world, [S, 4] rotations and [S, 3] metres, of which those in Used are read, to the
-        /// avatar's pose: local rotations [T, 4], unit, and local translations [T, 3], metres.
+        /// avatar's pose at a time: local rotations [T, 4], unit, and local translations [T, 3], metres.
         /// </summary>
         public void Pose(
-            ReadOnlySpan<double> turned, ReadOnlySpan<double> placed, Span<double> rotations, Span<double> translations)
+            ReadOnlySpan<double> turned, ReadOnlySpan<double> placed, double seconds, Span<double> rotations,
+            Span<double> translations)
         {
             Skeleton target = rest.Target;
             for (int joint = 0; joint < target.JointCount; joint++)
@@ -76,7 +80,12 @@ namespace Mua.Motion
                 local.Store(rotations, joint);
             }
             place.Turn(rotations, world);
-            place.Place(rotations, translations, place.Sources.Length == 0 ? new Vector3D() : Gone(placed));
+            Vector3D gone = place.Sources.Length == 0 ? new Vector3D() : Gone(placed);
+            place.Place(rotations, translations, gone);
+            if (footing != null)
+            {
+                place.Place(rotations, translations, gone, footing.Lift(seconds, place.FootHeight(rotations, translations)));
+            }
         }
 
         /// <summary>The role of a bone of Unity's HumanBodyBones, by its name; null for one that has none, as an eye.</summary>
