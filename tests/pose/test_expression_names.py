@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from mua.arrays import Array
-from mua.pose.expression_names import BY_OTHERS, match_expressions
-from mua.pose.expression_vocabulary import ARKIT, VISEMES, VRM, known_expression
+from mua.pose.expression_names import STAND_INS, match_expressions
+from mua.pose.expression_vocabulary import ARKIT, NAMES, VISEMES, VRM, known_expression
 
 EVERY = (*ARKIT, *VRM, *VISEMES)
 
@@ -17,9 +17,15 @@ def weights(avatar: tuple[str, ...], source: dict[str, float]) -> dict[str, floa
     return {name: round(float(w), 6) for name, w in zip(avatar, moved, strict=True) if w}
 
 
+def test_every_other_name_means_an_expression() -> None:
+    assert {*NAMES["otherNames"].values()} <= {*EVERY}
+    assert all(known_expression(other) == name for other, name in NAMES["otherNames"].items())
+
+
 def test_vocabularies_have_their_published_sizes() -> None:
     assert (len(set(ARKIT)), len(set(VRM)), len(set(VISEMES))) == (52, 18, 15)
-    assert set(BY_OTHERS) == set(EVERY)
+    assert set(STAND_INS) <= set(EVERY)
+    assert {other for sets in STAND_INS.values() for there in sets for other in there} <= set(EVERY)
 
 
 @pytest.mark.parametrize("name", EVERY)
@@ -46,6 +52,8 @@ def test_every_name_is_known_in_usual_spellings(name: str) -> None:
         ("A", "aa"),
         ("viseme_U", "viseme_ou"),
         ("sil", "viseme_sil"),
+        ("PP", "viseme_PP"),
+        ("nn", "viseme_nn"),
         ("まばたき", "blink"),
         ("EyeClosedLeft", "eyeBlinkLeft"),
         ("Eye Blink Left", "eyeBlinkLeft"),
@@ -70,7 +78,7 @@ def test_same_vocabulary_maps_to_itself(names: tuple[str, ...]) -> None:
 @pytest.mark.parametrize("avatar", [ARKIT, VRM, VISEMES])
 def test_what_has_a_counterpart_moves_something(source: str, avatar: tuple[str, ...]) -> None:
     matrix = match_expressions(avatar, [source])
-    expected = source in avatar or any(set(there) & set(avatar) for there in BY_OTHERS[source])
+    expected = source in avatar or any(set(there) & set(avatar) for there in STAND_INS.get(source, ()))
     assert matrix.any() == expected
     assert (np.abs(matrix) <= 1).all()
 

@@ -1,5 +1,6 @@
 """Expressions of AvatarRenderer in a player loop of stand-ins: what an application, a clip and a tracked face show."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,7 @@ from synthetic_avatar import synthetic_avatar, with_expressions
 from mua.arrays import Array
 from mua.asset import read, write
 from mua.gpu import Device
+from mua.pose.expression_names import match_expressions
 
 SETTLED = 8  # displayed frames, as in programs/ComponentFace.cs
 SORTING = len(FRAME_ORDER) - FRAME_ORDER.index("SplatProject")
@@ -96,6 +98,32 @@ def test_blend_shapes_of_equal_names_set_expressions(story: Story, face: Path) -
     assert bulges == "no blend shape of box has the name of one of the avatar's expressions, such as jawOpen."
     assert silent == "the avatar has no expressions, so that the blend shapes of box move nothing."
     assert reported["said"] == [bulges, silent]
+
+
+def test_a_trackers_names_move_what_the_avatar_has(story: Story, folder: Path) -> None:
+    """As much as the package's clips do; other expressions stay with the clip."""
+    avatar = with_expressions(synthetic_avatar(1))
+    assert avatar.rig.expressions
+    assert avatar.clips[0].expressions is not None
+    names = ("aa", "blink", "oh", "Smoking")
+    named = replace(avatar.rig, expressions=replace(avatar.rig.expressions, names=names))
+    write(folder / "vrm.muaavatar", replace(avatar, rig=named), storage="f16")
+    reported, clip = story("TakesTrackersNames", "vrm"), avatar.clips[0].expressions[0].tolist()
+
+    def weights(source: dict[str, float], own: list[float]) -> object:
+        matrix = match_expressions(names, [*source])
+        found = np.clip(matrix @ np.array([*source.values()]), 0, 1)
+        return pytest.approx([w if row.any() else o for w, row, o in zip(found, matrix, own, strict=True)], rel=1e-6)
+
+    sent = {"jawOpen": 0.6, "cheekPuff": 1.0, "eyeBlinkLeft": 1.0, "eyeBlink_R": 0.5, "mouthClose": 0.2}
+    assert reported["followed"] == ["True False True True True False"]
+    assert numbers(reported["set"][0]) == weights(sent, clip)
+    assert numbers(reported["set"][0]) == pytest.approx([0.4, 0.75, *clip[2:]])
+    assert reported["allocated"] == ["0"]
+    assert [numbers(line) for line in reported["reset"]] == [pytest.approx(clip, rel=1e-6)] * 2
+    shapes = {"jawOpen": 0.9, "mouthClose": 0.7, "cheekPuff": 0.5, "eyeBlinkLeft": 0.3, "Smoking": 0.1}
+    assert numbers(reported["tracked"][0]) == weights(shapes, clip)
+    assert (reported["said"], reported["log"]) == ([""], [])
 
 
 def test_a_face_or_an_avatar_that_goes_before_the_avatar_is_ready(story: Story, face: Path) -> None:

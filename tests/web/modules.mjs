@@ -14,6 +14,7 @@
 //   roles          of a file of skeletons: the joints of every role
 //   retarget       of a skeleton's file, and a motion's: the clip and notes, or the sentence that says what is wrong
 //   live           of a skeleton's file and a rig's, with poses of the latter: the avatar's
+//   names          of a file of pairs, an avatar's names of expressions and a source's: the shares of each
 //   numbers        half floats, and numbers as sentences have them
 
 import "./strict_inflate.mjs";
@@ -35,6 +36,7 @@ import { FrameBudget } from "../../python/mua/web/frame_budget.js";
 import { handleOf } from "../../python/mua/web/handle.js";
 import { chooseLevels, splatCorners, texelPixels } from "../../python/mua/web/level_choice.js";
 import { Levels } from "../../python/mua/web/levels.js";
+import { matchExpressions } from "../../python/mua/web/names/match.js";
 import { groundHeight, shadowArea } from "../../python/mua/web/overlays.js";
 import { boxAround } from "../../python/mua/web/placement.js";
 import { Playback } from "../../python/mua/web/playback.js";
@@ -314,6 +316,8 @@ if (what === "roles")
       rolesOf({ ...named, parents: Int32Array.from(parents) }),
     ),
   );
+if (what === "names")
+  for (const [names, source] of JSON.parse(readFileSync(given[0]))) say(list(matchExpressions(names, source)));
 if (what === "retarget") say(await retargeted(skeletonOf(given[0]), given[1], JSON.parse(given[2] ?? "{}")));
 if (what === "live") say(followed(skeletonOf(given[0]), JSON.parse(readFileSync(given[1], "utf8"))));
 if (what === "turns") say(turns(linesOf(given[0])));

@@ -202,9 +202,10 @@ def test_the_player_is_small() -> None:
         (["vr.js"], 10_000),
         (["anatomy.js"], 6_500),
         (["expressing.js"], 5_500),
+        (["names/face.js"], 5_500),
         (["picture.js"], 1_000),
     ],
-    ids=["motion", "headset", "geometry and skeleton", "expressions", "screenshot"],
+    ids=["motion", "headset", "geometry and skeleton", "expressions", "names", "screenshot"],
 )
 def test_what_is_loaded_on_demand_is_small(roots: list[str], largest: int) -> None:
     assert 0 < compressed(needed(*roots) - needed(*FIRST)) < largest

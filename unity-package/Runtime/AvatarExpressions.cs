@@ -1,6 +1,7 @@
 using System;
 using System.Collections.Generic;
 using Mua.Format;
+using Mua.Motion;
 
 namespace Mua
 {
@@ -13,6 +14,9 @@ namespace Mua
         private readonly string[] names;
         private readonly float[] set; // [E] NaN where none was
         private readonly float[] taken; // [E] as they were at the last Take
+        private readonly List<string> asked = new List<string>(); // by the application, in whatever vocabulary
+        private readonly List<float> weights = new List<float>(); // of those
+        private ExpressionMapping mapping; // from those
 
         public AvatarExpressions(AvatarFile avatar)
             : this(avatar.Expressions == null ? new string[0] : avatar.Expressions.Names)
@@ -65,9 +69,34 @@ namespace Mua
             set[index] = float.IsNaN(weight) ? weight : Math.Min(Math.Max(weight, 0), 1);
         }
 
+        /// <summary>
+        /// Sets a weight by the avatar's name for an expression, or by that of another which it stands for; whether anything
+        /// follows.
+        /// </summary>
+        public bool Set(string name, float weight)
+        {
+            int at = asked.IndexOf(name);
+            if (at < 0)
+            {
+                if (names.Length == 0 || (Find(name) < 0 && ExpressionNames.Known(name) == null))
+                {
+                    return false;
+                }
+                at = asked.Count;
+                asked.Add(name);
+                weights.Add(weight);
+                mapping = new ExpressionMapping(this, asked);
+            }
+            weights[at] = weight;
+            mapping.Apply(at, weights);
+            return mapping.Moves(at);
+        }
+
         /// <summary>Gives all expressions back to the clip.</summary>
         public void Reset()
         {
+            asked.Clear();
+            weights.Clear();
             for (int i = 0; i < set.Length; i++)
             {
                 set[i] = float.NaN;

@@ -4,8 +4,8 @@ using UnityEngine;
 namespace Mua
 {
     /// <summary>
-    /// A mesh whose blend shapes set the weights of an avatar's expressions of equal names, whoever moves them: a face tracker,
-    /// an Animator, a script.
+    /// A mesh whose blend shapes set the weights of an avatar's expressions, of equal names or the nearest, whoever moves them:
+    /// a face tracker, an Animator, a script.
     /// </summary>
     internal sealed class AvatarFace
     {
@@ -13,30 +13,36 @@ namespace Mua
 
         private readonly AvatarExpressions expressions;
         private readonly SkinnedMeshRenderer mesh;
-        private readonly List<int> shapes = new List<int>(), followers = new List<int>(); // expressions that follow them
+        private readonly List<int> shapes = new List<int>(); // [S] that may move expressions
+        private readonly float[] weights; // of those
+        private readonly ExpressionMapping mapping;
+        private readonly bool moves;
 
         public AvatarFace(AvatarExpressions expressions, SkinnedMeshRenderer mesh)
         {
             this.expressions = expressions;
             this.mesh = mesh;
             Mesh shared = mesh.sharedMesh;
-            var byName = new Dictionary<string, int>();
-            for (int shape = shared == null ? -1 : shared.blendShapeCount - 1; shape >= 0; shape--) // the first of a name stays
+            var names = new List<string>();
+            for (int shape = 0; shape < (shared == null ? 0 : shared.blendShapeCount); shape++)
             {
-                byName[Plain(shared.GetBlendShapeName(shape))] = shape;
-            }
-            for (int i = 0; i < expressions.Names.Count; i++)
-            {
-                if (byName.TryGetValue(Plain(expressions.Names[i]), out int shape))
+                string name = OwnName(shared.GetBlendShapeName(shape));
+                if (!names.Contains(name)) // the first of a name stays
                 {
+                    names.Add(name);
                     shapes.Add(shape);
-                    followers.Add(i);
                 }
+            }
+            weights = new float[names.Count];
+            mapping = new ExpressionMapping(expressions, names);
+            for (int i = 0; i < names.Count; i++)
+            {
+                moves |= mapping.Moves(i);
             }
         }
 
         /// <summary>A sentence where it moves nothing, or nothing.</summary>
-        public string Missing => followers.Count > 0
+        public string Missing => moves
             ? ""
             : expressions.Names.Count == 0
                 ? "the avatar has no expressions, so that the blend shapes of " + mesh.name + " move nothing."
@@ -49,20 +55,34 @@ namespace Mua
         /// <summary>Sets the weights of this moment.</summary>
         public void Read()
         {
-            for (int i = 0; i < shapes.Count; i++)
+            for (int i = 0; i < weights.Length; i++)
             {
                 float weight = mesh.GetBlendShapeWeight(shapes[i]);
-                expressions.Set(followers[i], float.IsNaN(weight) ? 0 : weight / Whole);
+                weights[i] = float.IsNaN(weight) ? 0 : weight / Whole;
             }
+            mapping.Apply(weights);
         }
 
         /// <summary>Gives its expressions back to the clip.</summary>
         public void Release()
         {
-            foreach (int expression in followers)
+            mapping.Release();
+        }
+
+        /// <summary>The avatar's name for an expression that a blend shape's is like, else the blend shape's.</summary>
+        private string OwnName(string shape)
+        {
+            if (expressions.Find(shape) < 0)
             {
-                expressions.Set(expression, float.NaN);
+                foreach (string name in expressions.Names)
+                {
+                    if (Plain(name) == Plain(shape))
+                    {
+                        return name;
+                    }
+                }
             }
+            return shape;
         }
 
         /// <summary>A name without case, underscores, and what exporters put before a point: blendShape1.mouthSmile_L.</summary>

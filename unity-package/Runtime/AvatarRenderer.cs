@@ -22,7 +22,7 @@ namespace Mua
         private Transform rig = null;
 
         [SerializeField]
-        [Tooltip("A mesh whose blend shapes set the avatar's expressions of equal names, as a face tracker moves them.")]
+        [Tooltip("A mesh whose blend shapes set the avatar's expressions of equal or like names, as a face tracker moves them.")]
         private SkinnedMeshRenderer face = null;
 
         [SerializeField, Tooltip("Name of the clip to play; if empty, the first.")]
@@ -124,8 +124,8 @@ namespace Mua
         }
 
         /// <summary>
-        /// A mesh whose blend shapes, of weights 0 to 100, set the avatar's expressions of equal names; case and underscores do
-        /// not matter. Null if the clip and SetExpression do.
+        /// A mesh whose blend shapes, of weights 0 to 100, set the avatar's expressions: those of equal names, whatever their
+        /// case and underscores, else the nearest. Null if the clip and SetExpression do.
         /// </summary>
         public SkinnedMeshRenderer Face
         {
@@ -241,9 +241,9 @@ namespace Mua
         }
 
         /// <summary>
-        /// Sets how far an expression shows, held to 0 to 1, whatever else moves the avatar; whether it has one of this name,
-        /// which no avatar has until it is ready. Another avatar begins without. ArgumentException where the weight is no finite
-        /// number.
+        /// Sets how far an expression shows, held to 0 to 1, whatever else moves the avatar: one of its own, or one of ARKit,
+        /// VRM or Oculus' visemes, which moves the nearest that it has. Whether any follows; none does until the avatar is
+        /// ready. Another avatar begins without. ArgumentException where the weight is no finite number.
         /// </summary>
         public bool SetExpression(string name, float weight)
         {
@@ -252,15 +252,10 @@ namespace Mua
                 throw new ArgumentException(
                     "the weight of the expression " + name + " is " + weight + ", expected a finite number", nameof(weight));
             }
-            int index = Expressions.Find(name);
-            if (index >= 0)
-            {
-                Expressions.Set(index, weight);
-            }
-            return index >= 0;
+            return Expressions.Set(name, weight);
         }
 
-        /// <summary>How far an expression shows at this moment, 0 to 1; 0 where the avatar has none of this name.</summary>
+        /// <summary>How far one of its own expressions shows at this moment, 0 to 1; 0 where it has none of this name.</summary>
         public float GetExpression(string name)
         {
             int index = Expressions.Find(name);

@@ -2,7 +2,8 @@
 
 A name moves its own expression where the avatar has it: the same name, else the same expression in another spelling.
 Otherwise it moves what comes nearest among the avatar's: ARKit's jawOpen moves VRM's aa, VRM's blink moves both
-eyelids of ARKit.
+eyelids of ARKit. What stands in for what is data, expression_names.json; browsers and Unity match by the same table:
+python/mua/web/names/match.js, unity-package/Runtime/Motion/ExpressionNames.cs.
 """
 
 from collections.abc import Mapping, Sequence
@@ -10,83 +11,10 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from mua.arrays import Array
-from mua.pose.expression_vocabulary import ARKIT, VISEMES, VRM, is_own_spelling, known_expression
-
-Weights = Mapping[str, float]
-
-
-def _both(name: str, weight: float) -> dict[str, float]:
-    """Both sides of one of ARKit's expressions."""
-    return {f"{name}Left": weight, f"{name}Right": weight}
-
-
-_SOUNDS: Mapping[str, Weights] = {  # a mouth's shape in ARKit's expressions
-    "aa": {"jawOpen": 0.7},
-    "ih": {"jawOpen": 0.2, **_both("mouthStretch", 0.5), **_both("mouthLowerDown", 0.3)},
-    "ou": {"jawOpen": 0.15, "mouthPucker": 0.8, "mouthFunnel": 0.4},
-    "ee": {"jawOpen": 0.25, **_both("mouthSmile", 0.3), **_both("mouthStretch", 0.4)},
-    "oh": {"jawOpen": 0.4, "mouthFunnel": 0.7},
-    "PP": {**_both("mouthPress", 0.5), "mouthRollLower": 0.3, "mouthRollUpper": 0.3},
-    "FF": {"jawOpen": 0.05, "mouthRollLower": 0.6, **_both("mouthUpperUp", 0.3)},
-    "TH": {"jawOpen": 0.2, "tongueOut": 0.3},
-    "DD": {"jawOpen": 0.15, **_both("mouthLowerDown", 0.3)},
-    "kk": {"jawOpen": 0.2, **_both("mouthStretch", 0.2)},
-    "CH": {"jawOpen": 0.1, "mouthFunnel": 0.5},
-    "SS": {"jawOpen": 0.05, **_both("mouthStretch", 0.4)},
-    "nn": {"jawOpen": 0.15, **_both("mouthStretch", 0.1)},
-    "RR": {"jawOpen": 0.2, "mouthFunnel": 0.4},
-}
-_VOWELS = {"aa": "aa", "ih": "ih", "ou": "ou", "ee": "E", "oh": "oh"}  # VRM's name, Oculus'
+from mua.pose.expression_vocabulary import ARKIT, NAMES, VISEMES, VRM, is_own_spelling, known_expression
 
 # For each expression, sets of others that stand for it; the first of which an avatar has any is taken.
-_VRM_BY_OTHERS: Mapping[str, Sequence[Weights]] = {
-    **{vowel: ({f"viseme_{sound}": 1.0}, _SOUNDS[vowel]) for vowel, sound in _VOWELS.items()},
-    "happy": ({**_both("mouthSmile", 0.8), **_both("cheekSquint", 0.5)},),
-    "angry": ({**_both("browDown", 1.0), **_both("noseSneer", 0.3), **_both("mouthFrown", 0.3)},),
-    "sad": ({"browInnerUp": 0.8, **_both("mouthFrown", 0.8)},),
-    "relaxed": ({**_both("mouthSmile", 0.4), **_both("eyeSquint", 0.3)},),
-    "surprised": ({"browInnerUp": 0.8, **_both("browOuterUp", 1.0), **_both("eyeWide", 1.0), "jawOpen": 0.3},),
-    "neutral": (),
-    "blink": (_both("blink", 1.0), _both("eyeBlink", 1.0)),
-    "blinkLeft": ({"eyeBlinkLeft": 1.0}, {"blink": 0.5}),
-    "blinkRight": ({"eyeBlinkRight": 1.0}, {"blink": 0.5}),
-    "lookUp": (_both("eyeLookUp", 1.0),),
-    "lookDown": (_both("eyeLookDown", 1.0),),
-    "lookLeft": ({"eyeLookOutLeft": 1.0, "eyeLookInRight": 1.0},),
-    "lookRight": ({"eyeLookInLeft": 1.0, "eyeLookOutRight": 1.0},),
-}
-_VISEMES_BY_OTHERS: Mapping[str, Sequence[Weights]] = {
-    "viseme_sil": (),
-    **{f"viseme_{sound}": ({vowel: 1.0}, _SOUNDS[vowel]) for vowel, sound in _VOWELS.items()},
-    "viseme_PP": (_SOUNDS["PP"],),  # no vowel has closed lips
-    "viseme_FF": (_SOUNDS["FF"], {"ih": 0.2}),
-    "viseme_TH": (_SOUNDS["TH"], {"ih": 0.3}),
-    "viseme_DD": (_SOUNDS["DD"], {"ih": 0.4}),
-    "viseme_kk": (_SOUNDS["kk"], {"ih": 0.3}),
-    "viseme_CH": (_SOUNDS["CH"], {"ou": 0.4}),
-    "viseme_SS": (_SOUNDS["SS"], {"ih": 0.4}),
-    "viseme_nn": (_SOUNDS["nn"], {"ih": 0.3}),
-    "viseme_RR": (_SOUNDS["RR"], {"ou": 0.4}),
-}
-_HALVES = {
-    **{"mouthSmile": "happy", "mouthFrown": "sad", "browDown": "angry", "eyeWide": "surprised"},
-    **{"eyeLookUp": "lookUp", "eyeLookDown": "lookDown"},
-}
-_ARKIT_BY_OTHERS: Mapping[str, Sequence[Weights]] = {
-    **dict.fromkeys(ARKIT, ()),  # what no preset shows: a puffed cheek, a jaw to the side
-    **{f"{name}{side}": ({mood: 0.5},) for name, mood in _HALVES.items() for side in ("Left", "Right")},
-    **{f"eyeBlink{side}": ({f"blink{side}": 1.0}, {"blink": 0.5}) for side in ("Left", "Right")},
-    **{name: ({"lookLeft": 0.5},) for name in ("eyeLookOutLeft", "eyeLookInRight")},
-    **{name: ({"lookRight": 0.5},) for name in ("eyeLookInLeft", "eyeLookOutRight")},
-    "jawOpen": ({"aa": 1.0}, {"viseme_aa": 1.0}),
-    "mouthClose": ({"aa": -1.0}, {"viseme_aa": -1.0}),  # the lips closed over a jaw that is open
-    "mouthFunnel": ({"oh": 1.0}, {"viseme_oh": 1.0}),
-    "mouthPucker": ({"ou": 1.0}, {"viseme_ou": 1.0}),
-    **{f"mouthStretch{side}": ({"ih": 0.5}, {"viseme_ih": 0.5}) for side in ("Left", "Right")},
-    **{name: ({"viseme_PP": 0.5},) for name in ("mouthPressLeft", "mouthPressRight")},
-    "tongueOut": ({"viseme_TH": 1.0},),
-}
-BY_OTHERS = {**_VRM_BY_OTHERS, **_VISEMES_BY_OTHERS, **_ARKIT_BY_OTHERS}
+STAND_INS: Mapping[str, Sequence[Mapping[str, float]]] = NAMES["standIns"]
 _VOCABULARIES = (VRM, VISEMES, ARKIT)  # where a source has several, an expression follows the first
 
 
@@ -133,7 +61,7 @@ def _rows(names: Sequence[str]) -> dict[str, int]:
 
 def _nearest(name: str, row_of: Mapping[str, int]) -> dict[str, float]:
     """What an avatar has of the first set that stands for an expression."""
-    for weights in BY_OTHERS[name]:
+    for weights in STAND_INS.get(name, ()):
         there = {other: weight for other, weight in weights.items() if other in row_of}
         if there:
             return there

@@ -1,53 +1,19 @@
-"""What an expression is by its name, in the spellings of ARKit, VRM, Oculus' visemes and of exporters."""
+"""What an expression is by its name, in the spellings of ARKit, VRM, Oculus' visemes and of exporters.
 
+The names are data, expression_names.json, from which tools/gen_expression_names.py makes those of browsers and of Unity.
+"""
+
+import json
 import re
 import unicodedata
+from pathlib import Path
 
-ARKIT = (
-    *(f"eye{part}{side}" for part in ("Blink", "Squint", "Wide") for side in ("Left", "Right")),
-    *(f"eyeLook{way}{side}" for way in ("Up", "Down", "In", "Out") for side in ("Left", "Right")),
-    *("jawForward", "jawLeft", "jawRight", "jawOpen"),
-    *("mouthClose", "mouthFunnel", "mouthPucker", "mouthLeft", "mouthRight"),
-    *("mouthRollLower", "mouthRollUpper", "mouthShrugLower", "mouthShrugUpper"),
-    *(
-        f"mouth{part}{side}"
-        for part in ("Smile", "Frown", "Dimple", "Stretch", "Press", "LowerDown", "UpperUp")
-        for side in ("Left", "Right")
-    ),
-    *(f"brow{part}{side}" for part in ("Down", "OuterUp") for side in ("Left", "Right")),
-    *("browInnerUp", "cheekPuff", "cheekSquintLeft", "cheekSquintRight", "noseSneerLeft", "noseSneerRight"),
-    "tongueOut",
-)
-VRM_MOODS = ("happy", "angry", "sad", "relaxed", "surprised", "neutral")
-VRM_MOUTH = ("aa", "ih", "ou", "ee", "oh")
-VRM_LOOK = ("lookUp", "lookDown", "lookLeft", "lookRight")
-VRM = (*VRM_MOODS, *VRM_MOUTH, "blink", "blinkLeft", "blinkRight", *VRM_LOOK)  # VRM 1.0's presets
-VISEMES = tuple(
-    f"viseme_{sound}"
-    for sound in ("sil", "PP", "FF", "TH", "DD", "kk", "CH", "SS", "nn", "RR", "aa", "E", "ih", "oh", "ou")
-)
+NAMES = json.loads(Path(__file__).with_name("expression_names.json").read_text(encoding="utf-8"))
+ARKIT, VRM, VISEMES = (tuple(NAMES[vocabulary]) for vocabulary in ("arkit", "vrm", "visemes"))  # VRM 1.0's presets
 
-_ALIASES = {
-    **{"a": "aa", "i": "ih", "u": "ou", "e": "ee", "o": "oh"},  # VRM 0's presets
-    **{"joy": "happy", "sorrow": "sad", "fun": "relaxed"},
-    **{"viseme_i": "viseme_ih", "viseme_o": "viseme_oh", "viseme_u": "viseme_ou"},  # Ready Player Me's
-    **{sound: f"viseme_{sound}" for sound in ("sil", "pp", "ff", "th", "dd", "kk", "ch", "ss", "nn", "rr")},
-    **{"mth_a": "aa", "mth_i": "ih", "mth_u": "ou", "mth_e": "ee", "mth_o": "oh"},  # VRoid's, Unity-chan's
-    **{"eye_close": "blink", "eye_close_l": "blinkLeft", "eye_close_r": "blinkRight", "eye_def_c": "blink"},
-    **{"all_joy": "happy", "all_angry": "angry", "all_sorrow": "sad", "all_fun": "relaxed"},
-    **{"all_surprised": "surprised", "all_neutral": "neutral"},
-    **{"eyes_closed": "blink", "eyes_look_up": "lookUp", "eyes_look_down": "lookDown"},  # Ready Player Me's simple ones
-    **{"mouth_open": "aa", "mouth_smile": "happy"},
-    **{"eye_closed_left": "eyeBlinkLeft", "eye_closed_right": "eyeBlinkRight"},  # VRChat's Unified Expressions
-    **{"mouth_corner_pull_left": "mouthSmileLeft", "mouth_corner_pull_right": "mouthSmileRight"},
-    **{"mouth_closed": "mouthClose", "lip_funnel": "mouthFunnel", "lip_pucker": "mouthPucker"},
-    **{"あ": "aa", "い": "ih", "う": "ou", "え": "ee", "お": "oh", "まばたき": "blink"},  # MikuMikuDance's
-    **{"ウィンク": "blinkLeft", "ウィンク右": "blinkRight", "笑い": "relaxed", "びっくり": "surprised"},
-}
 _WORD = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+|[^\W\d_A-Za-z]+")
-_OWNERS = {"ak", "arkit", "bs", "blend", "shape", "blendshape", "fcl", "head", "face", "vrc"}  # say nothing
+_OWNERS = {*NAMES["owners"]}  # words that only say whose an expression is
 _SIDE = {"l": "left", "r": "right"}
-_ROCKETBOX_VISEME = re.compile(r"^(?:\w+\.)?AA_VI_\d\d_(\w+)$")
 
 
 def _words(name: str) -> list[str]:
@@ -59,15 +25,16 @@ def _words(name: str) -> list[str]:
     return words
 
 
-def _spelt(words: list[str]) -> str:
-    """Words in one spelling: a last l or r is a side."""
+def _spelt(name: str) -> str:
+    """A name in one spelling: a last l or r is a side."""
+    words = _words(name)
     if len(words) > 1:
         words = [*words[:-1], _SIDE.get(words[-1], words[-1])]
     return "".join(words)
 
 
-_BY_SPELLING = {_spelt(_words(name)): name for name in (*ARKIT, *VRM, *VISEMES)}
-_BY_ALIAS = {_spelt(_words(alias)): name for alias, name in _ALIASES.items()}
+_BY_SPELLING = {_spelt(name): name for name in (*ARKIT, *VRM, *VISEMES)}
+_BY_OTHER_NAME = {_spelt(other): name for other, name in NAMES["otherNames"].items()}
 
 
 def known_expression(name: str) -> str | None:
@@ -75,11 +42,10 @@ def known_expression(name: str) -> str | None:
 
     VRM 0's presets mean those of VRM 1.0; a vowel alone (aa, E, ih, oh, ou) is VRM's.
     """
-    rocketbox = _ROCKETBOX_VISEME.match(name)
-    spelt = _spelt(_words(f"viseme_{rocketbox[1]}" if rocketbox else name))
-    return _BY_SPELLING.get(spelt) or _BY_ALIAS.get(spelt)
+    spelt = _spelt(name)
+    return _BY_SPELLING.get(spelt) or _BY_OTHER_NAME.get(spelt)
 
 
 def is_own_spelling(name: str) -> bool:
     """Whether a name is that of its expression in another spelling, and not only one with the same meaning."""
-    return _spelt(_words(name)) in _BY_SPELLING
+    return _spelt(name) in _BY_SPELLING

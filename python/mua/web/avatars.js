@@ -1,9 +1,10 @@
 // A player's avatars: what they play, and what a page sets of them.
 
+import { AvatarError } from "./error.js";
 import { clipsOf } from "./handle.js";
 import { LivePose } from "./live.js";
 import { Playback } from "./playback.js";
-import { poseFrom, weighted, weightsFrom } from "./pose.js";
+import { poseFrom, weighted } from "./pose.js";
 
 /** @typedef {import("./player.js").AvatarHandle} AvatarHandle */
 /** @typedef {import("./format/read.js").Avatar} Avatar */
@@ -17,6 +18,7 @@ import { poseFrom, weighted, weightsFrom } from "./pose.js";
  * @property {import("./skeleton.js").Pose | null} pose that the page has set
  * @property {LivePose | null} live and what is decoded of it
  * @property {boolean} fresh whether it has set something since
+ * @property {import("./names/face.js").Face | null} face takes what the page sets of expressions; null where there are none
  * @property {Float32Array | null} weights of expressions that the page has set
  * @property {Float32Array | null} taken those of them that pictures show
  * @property {number} since when, milliseconds
@@ -24,6 +26,8 @@ import { poseFrom, weighted, weightsFrom } from "./pose.js";
  * @property {Clip[]} added by the page
  * @property {number} asked clips so far
  */
+
+const FACELESS = "setExpressions: the avatar has no expressions.";
 
 /** What a player does with its avatars before it draws them. */
 export class Avatars {
@@ -63,7 +67,8 @@ export class Avatars {
   setExpressions(handle, given) {
     const entry = this.entryOf(handle);
     if (!entry) return;
-    const weights = given && weightsFrom(entry.avatar.expressions, entry.weights, given);
+    if (!entry.face && Object.keys(given ?? {}).length) throw new AvatarError(FACELESS);
+    const weights = entry.face?.set(given) ?? null;
     if (String(weights) === String(entry.weights)) return;
     entry.weights = weights;
     entry.fresh = true;

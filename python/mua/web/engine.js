@@ -137,13 +137,13 @@ export class Engine extends Avatars {
   async put(avatar, part, whole) {
     const { renderer } = this;
     if (!renderer) throw new AvatarError(AWAY);
-    const slot = await renderer.add(avatar);
+    const { slot, face } = await this.prepared(avatar, renderer);
     if (this.renderer !== renderer) throw new AvatarError(AWAY); // lost meanwhile
     const entry = part ?? this.entry(avatar, slot);
     if (!part) this.entries.push(entry);
     else if (this.entries.includes(part)) renderer.replace(part.slot, slot);
     else renderer.remove(slot); // its part was taken away meanwhile
-    Object.assign(entry, { avatar, slot, grounds: new Map() });
+    Object.assign(entry, { avatar, slot, grounds: new Map(), face: entry.face ?? face });
     Object.assign(entry.handle, described(avatar), { whole });
     if (entry.added.length) this.addClips(entry);
     if (!part && this.entries.length === 1) this.frameAll();
@@ -151,10 +151,23 @@ export class Engine extends Avatars {
     return entry;
   }
 
+  /** Upload an avatar, while what takes its names is fetched. @param {Avatar} avatar @param {Renderer} renderer */
+  async prepared(avatar, renderer) {
+    const naming = faceOf(avatar);
+    naming.catch(() => {}); // where the device cannot hold the avatar
+    const slot = await renderer.add(avatar);
+    try {
+      return { slot, face: await naming };
+    } catch (error) {
+      renderer.remove(slot);
+      throw error;
+    }
+  }
+
   /** @returns {Entry} */
   entry(/** @type {Avatar} */ avatar, /** @type {import("./renderer.js").Slot} */ slot) {
     const posed = { pose: null, live: null, fresh: false, changes: 0, added: [], asked: 0 };
-    const expressed = { weights: null, taken: null, since: -Infinity };
+    const expressed = { face: null, weights: null, taken: null, since: -Infinity };
     return { avatar, slot, grounds: new Map(), handle: handleOf(avatar, this), ...posed, ...expressed };
   }
 
@@ -356,4 +369,11 @@ function asAvatarError(/** @type {unknown} */ error, /** @type {string} */ what)
   return error instanceof AvatarError
     ? error
     : new AvatarError(`${what}: ${error instanceof Error ? error.message : error}`);
+}
+
+/** What takes weights of expressions by name; null where an avatar has none. */
+async function faceOf(/** @type {Avatar} */ { expressions }) {
+  if (!expressions.length) return null;
+  const { Face } = await import("./names/face.js");
+  return new Face(expressions);
 }

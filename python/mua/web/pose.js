@@ -42,19 +42,6 @@ export function poseFrom({ skeleton, expressions }, { rotations, translations, e
   return { ...pose, expressions: Float32Array.from(weights, held) };
 }
 
-/** Weights of expressions where a page sets them, over those that it has set before. @param {string[]} names @param {Float32Array | null} before @param {Readonly<Record<string, number>>} given @returns {Float32Array} NaN where it has set none */
-export function weightsFrom(names, before, given) {
-  const weights = before?.slice() ?? new Float32Array(names.length).fill(Number.NaN);
-  for (const [name, weight] of Object.entries(given)) {
-    const at = names.indexOf(name);
-    if (at < 0) throw new AvatarError(`setExpressions: the avatar has no expression "${name}", only ${listed(names)}.`);
-    if (!Number.isFinite(weight))
-      throw new AvatarError(`setExpressions: ${name}: expected a finite number, found ${weight}.`);
-    weights[at] = weight;
-  }
-  return weights;
-}
-
 /** A pose with the weights that a page has set. @param {Pose} pose @param {Float32Array | null} weights @returns {Pose} */
 export function weighted(pose, weights) {
   if (!weights) return pose;
@@ -64,7 +51,9 @@ export function weighted(pose, weights) {
 
 const held = (/** @type {number} */ weight) => Math.min(Math.max(weight, 0), 1);
 const fault = (/** @type {string} */ sentence) => new AvatarError(`setPose: ${sentence}.`);
-const listed = (/** @type {string[]} */ names) =>
+
+/** Names in a sentence. */
+export const listed = (/** @type {string[]} */ names) =>
   names.length > SHOWN ? `${names.slice(0, SHOWN).join(", ")}, ... ${names.length} in all` : names.join(", ") || "none";
 
 /** Numbers of all joints: as they are given, or by name over those of the bind pose. @param {string} field @param {JointNumbers | undefined} given @param {string[]} names @param {Float32Array | Float64Array} bind */

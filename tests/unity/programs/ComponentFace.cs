@@ -92,6 +92,42 @@ namespace Mua
             Say("said", shown.Message);
         }
 
+        /// <summary>A tracker's names on an avatar that has VRM's: set by the application, then by a mesh.</summary>
+        private static void TakesTrackersNames()
+        {
+            AvatarRenderer shown = Begin(files[0]);
+            Until(shown);
+            shown.IsPlaying = false;
+            var followed = new List<string>();
+            foreach (string word in "jawOpen=0.6 cheekPuff=1 eyeBlinkLeft=1 eyeBlink_R=0.5 mouthClose=0.2 wink=1".Split(' '))
+            {
+                string[] pair = word.Split('=');
+                followed.Add(shown.SetExpression(pair[0], float.Parse(pair[1])).ToString());
+            }
+            Say("followed", string.Join(" ", followed.ToArray()));
+            Frames(2);
+            SayWeights("set", shown);
+            long before = GC.GetAllocatedBytesForCurrentThread();
+            for (int i = 0; i < 100; i++)
+            {
+                shown.SetExpression("jawOpen", i / 100f);
+            }
+            Say("allocated", GC.GetAllocatedBytesForCurrentThread() - before);
+            shown.ResetExpressions();
+            SayWeights("reset", shown);
+            SkinnedMeshRenderer face = MakeFace("head", "jawOpen", "mouthClose", "cheekPuff", "eyeBlinkLeft", "blend.smoking");
+            shown.Face = face;
+            for (int shape = 0; shape < 5; shape++)
+            {
+                face.SetBlendShapeWeight(shape, 90 - 20 * shape);
+            }
+            Frames(2);
+            SayWeights("tracked", shown);
+            shown.Face = null;
+            SayWeights("reset", shown);
+            Say("said", shown.Message);
+        }
+
         /// <summary>An avatar that goes before it is ready, and one whose face goes before.</summary>
         private static void FaceGoesEarly()
         {

@@ -23,7 +23,8 @@ export async function readClip(source, avatar, { name, mapping = {}, animation }
     const isBvh = /^\s*(#|\/\/|;|hierarchy)/i.test(text.slice(0, 200));
     if (!isBvh && !/^\s*(glTF|\{)/.test(text)) throw new AvatarError("expected a BVH, glTF, GLB, VRM or VRMA file.");
     const motion = isBvh ? readBvh(text) : await readGltf(content, beside, animation);
-    const { clip, notes } = retarget(motion, avatar, mapping);
+    const expresses = motion.expressions.names.length && avatar.expressions.length;
+    const { clip, notes } = retarget(motion, avatar, mapping, expresses ? await import("../names/match.js") : null);
     const stem = title.replace(/\.[^.]*$/, "");
     return { clip: { ...clip, name: name ?? (stem || "motion") }, notes };
   } catch (error) {

@@ -25,11 +25,11 @@ const TURNED = 45; // degrees between where hips or chest are and where their jo
 const NO_BODY =
   "its rest pose shows no body that stands, so that a page cannot tell how its joints lie; bake the clip into the avatar (mua-bake --motion).";
 
-/** A clip of an avatar, at the avatar's own rate, and notes worth telling. @param {Motion} motion @param {Avatar} avatar @param {Record<string, string>} mapping joint of the avatar to joint of the motion @returns {{clip: Omit<Clip, "name">, notes: string[]}} */
-export function retarget(motion, { skeleton, encoding, expressions }, mapping) {
+/** A clip of an avatar, at the avatar's own rate, and notes worth telling. @param {Motion} motion @param {Avatar} avatar @param {Record<string, string>} mapping joint of the avatar to joint of the motion @param {typeof import("../names/match.js") | null} names fetched where both have expressions @returns {{clip: Omit<Clip, "name">, notes: string[]}} */
+export function retarget(motion, { skeleton, encoding, expressions }, mapping, names) {
   const { rate } = encoding;
   const poses = sampled(motion, rate);
-  const weights = weightsOf(motion, expressions, poses.length, rate);
+  const weights = names ? weightsOf(motion, expressions, poses.length, rate, names) : undefined;
   if (sameJoints(motion.bones, skeleton)) return { clip: clipOf(skeleton, poses, rate, weights), notes: motion.notes };
   const matches = matchJoints(motion.bones, skeleton, mapping, motion.stated);
   const rest = new Rest(motion.bones, skeleton, matches);
@@ -130,25 +130,23 @@ function turnedOtherwise(rest, source) {
   });
 }
 
-/** Weights [F, E] of an avatar's own expressions, in frames of another rate; none where the motion has none of them. @param {Motion} motion @param {string[]} names @param {number} frames @param {number} rate */
-function weightsOf(motion, names, frames, rate) {
+/** Weights [F, E] of an avatar's expressions, in frames of another rate; none where the motion moves none of them. @param {Motion} motion @param {string[]} names @param {number} frames @param {number} rate @param {typeof import("../names/match.js")} matching */
+function weightsOf(motion, names, frames, rate, { matchExpressions, weighted }) {
   const { expressions } = motion;
-  const columns = names.map((name) => expressions.names.indexOf(name));
   const width = expressions.names.length;
-  const left = expressions.names.filter((name) => !names.includes(name)).length;
-  if (left)
-    motion.notes.push(`${left} of the motion's ${width} expressions are none of the avatar's and are left out.`);
-  if (!columns.some((column) => column >= 0)) return undefined;
+  const matrix = matchExpressions(names, expressions.names);
+  const left = expressions.names.filter((_, i) => !names.some((_, row) => matrix[row * width + i])).length;
+  if (left) motion.notes.push(`${left} of the motion's ${width} expressions move none of the avatar's.`);
+  if (left === width) return undefined;
   const found = new Float32Array(frames * names.length);
   for (let frame = 0; frame < frames; frame++) {
     const at = Math.min(frame * (motion.rate / rate), motion.frames - 1);
     const before = Math.floor(at);
     const after = Math.min(before + 1, motion.frames - 1);
-    for (const [i, column] of columns.entries()) {
-      if (column < 0) continue;
-      const [a, b] = [before, after].map((one) => expressions.weights[one * width + column]);
-      found[frame * names.length + i] = Math.min(Math.max(a + (at - before) * (b - a), 0), 1);
-    }
+    const [a, b] = [before, after].map((one) =>
+      weighted(matrix, expressions.weights.subarray(one * width, (one + 1) * width)),
+    );
+    for (const [i, weight] of a.entries()) found[frame * names.length + i] = weight + (at - before) * (b[i] - weight);
   }
   return found;
 }

@@ -1,0 +1,167 @@
+using System;
+using System.Collections.Generic;
+using System.Text;
+using System.Text.RegularExpressions;
+
+namespace Mua.Motion
+{
+    /// <summary>
+    /// Which expressions of an avatar those of a mesh or a tracker move, and how much. Reference:
+    /// python/mua/pose/expression_names.py.
+    /// </summary>
+    public static class ExpressionNames
+    {
+        private static readonly Regex Word = new Regex(
+            @"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+|[\p{L}\p{Nl}\p{No}\p{Cs}-[A-Za-z]]+", RegexOptions.CultureInvariant);
+
+        private static readonly Dictionary<string, string> BySpelling = Spelt();
+        private static readonly Dictionary<string, string> ByOtherName = OtherNames();
+
+        /// <summary>The expression of ARKit, VRM or Oculus' visemes that a name means, in whatever spelling; else null.</summary>
+        public static string Known(string name)
+        {
+            string spelling = Spelling(name);
+            return BySpelling.TryGetValue(spelling, out string known) || ByOtherName.TryGetValue(spelling, out known) ? known : null;
+        }
+
+        /// <summary>
+        /// How much [E, S] each expression of a source moves each of an avatar: 1 for the same, shares where another stands for
+        /// it. The avatar's weights are sums that are held to 0 to 1.
+        /// </summary>
+        public static float[,] Match(IReadOnlyList<string> avatar, IReadOnlyList<string> source)
+        {
+            var shares = new float[avatar.Count, source.Count];
+            Dictionary<string, int> rows = Rows(avatar);
+            int[] direct = Direct(avatar, source, rows);
+            var own = new HashSet<int>(direct);
+            var ranks = new int[avatar.Count]; // vocabulary that an expression follows, plus 1
+            for (int column = 0; column < source.Count; column++)
+            {
+                if (direct[column] >= 0)
+                {
+                    shares[direct[column], column] = 1;
+                    continue;
+                }
+                string known = Known(source[column]);
+                foreach (KeyValuePair<string, float> share in Nearest(known, rows))
+                {
+                    int row = rows[share.Key], rank = Rank(known) + 1;
+                    if (own.Contains(row) || (ranks[row] != 0 && ranks[row] < rank))
+                    {
+                        continue;
+                    }
+                    for (int other = 0; rank < ranks[row] && other < column; other++)
+                    {
+                        shares[row, other] = 0;
+                    }
+                    ranks[row] = rank;
+                    shares[row, column] = share.Value;
+                }
+            }
+            return shares;
+        }
+
+        /// <summary>The row that each name of a source moves by itself; -1 where it moves none.</summary>
+        private static int[] Direct(IReadOnlyList<string> avatar, IReadOnlyList<string> source, Dictionary<string, int> rows)
+        {
+            var direct = new int[source.Count];
+            for (int column = 0; column < direct.Length; column++)
+            {
+                direct[column] = -1;
+                for (int row = avatar.Count - 1; row >= 0; row--)
+                {
+                    direct[column] = avatar[row] == source[column] ? row : direct[column];
+                }
+                string known = direct[column] < 0 ? Known(source[column]) : null;
+                if (known != null && rows.TryGetValue(known, out int same))
+                {
+                    direct[column] = same;
+                }
+            }
+            return direct;
+        }
+
+        /// <summary>The row of each known expression; one in its own spelling goes before one of like meaning.</summary>
+        private static Dictionary<string, int> Rows(IReadOnlyList<string> avatar)
+        {
+            var rows = new Dictionary<string, int>();
+            foreach (bool first in new[] { true, false })
+            {
+                for (int row = 0; row < avatar.Count; row++)
+                {
+                    string known = Known(avatar[row]);
+                    if (known != null && BySpelling.ContainsKey(Spelling(avatar[row])) == first && !rows.ContainsKey(known))
+                    {
+                        rows.Add(known, row);
+                    }
+                }
+            }
+            return rows;
+        }
+
+        /// <summary>What an avatar has of the first set that stands for an expression.</summary>
+        private static List<KeyValuePair<string, float>> Nearest(string known, Dictionary<string, int> rows)
+        {
+            var there = new List<KeyValuePair<string, float>>();
+            if (known != null && ExpressionTable.StandIns.TryGetValue(known, out Dictionary<string, float>[] sets))
+            {
+                for (int i = 0; i < sets.Length && there.Count == 0; i++)
+                {
+                    foreach (KeyValuePair<string, float> share in sets[i])
+                    {
+                        if (rows.ContainsKey(share.Key))
+                        {
+                            there.Add(share);
+                        }
+                    }
+                }
+            }
+            return there;
+        }
+
+        private static int Rank(string known)
+        {
+            return Array.FindIndex(ExpressionTable.Vocabularies, names => Array.IndexOf(names, known) >= 0);
+        }
+
+        /// <summary>A name in one spelling, less words before it that only say whose it is.</summary>
+        private static string Spelling(string name)
+        {
+            string own = name.Normalize(NormalizationForm.FormKC);
+            MatchCollection words = Word.Matches(own.Substring(own.LastIndexOf('.') + 1));
+            var spelling = new StringBuilder();
+            for (int i = 0; i < words.Count; i++)
+            {
+                string word = words[i].Value.ToLowerInvariant();
+                bool isLast = i == words.Count - 1;
+                bool isOwner = spelling.Length == 0 && !isLast && Array.IndexOf(ExpressionTable.Owners, word) >= 0;
+                bool isSide = spelling.Length > 0 && isLast && (word == "l" || word == "r");
+                spelling.Append(isOwner ? "" : isSide ? word == "l" ? "left" : "right" : word);
+            }
+            return spelling.ToString();
+        }
+
+        private static Dictionary<string, string> Spelt()
+        {
+            var found = new Dictionary<string, string>();
+            foreach (string[] vocabulary in ExpressionTable.Vocabularies)
+            {
+                foreach (string name in vocabulary)
+                {
+                    found[Spelling(name)] = name;
+                }
+            }
+            return found;
+        }
+
+        private static Dictionary<string, string> OtherNames()
+        {
+            var found = new Dictionary<string, string>();
+            foreach (KeyValuePair<string, string> pair in ExpressionTable.OtherNames)
+            {
+                found[Spelling(pair.Key)] = pair.Value;
+            }
+            return found;
+        }
+    }
+}
