@@ -63,6 +63,7 @@ check: setup
 	$(BIN)/python tools/gen_spirv.py --check
 	$(BIN)/python tools/gen_wgsl.py --check
 	$(BIN)/python tools/gen_kernel_table.py --check
+	$(BIN)/python tools/gen_expression_names.py --check
 	$(BIN)/python tools/gen_joint_words.py --check
 	$(BIN)/python tools/gen_meta.py --check
 	$(BIN)/python tools/lint_upm.py

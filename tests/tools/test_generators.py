@@ -10,6 +10,7 @@ from types import ModuleType
 
 import checkout
 import compiled_folder
+import gen_expression_names
 import gen_golden
 import gen_joint_words
 import gen_kernel_table
@@ -30,6 +31,15 @@ def stale(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: pytest.Fixtu
     if module is gen_golden:
         written = tmp_path / "golden.bin"
         monkeypatch.setattr(module, "generate", lambda: {written: b"generated"})
+        monkeypatch.setattr(module, "ROOT", tmp_path)
+    elif module is gen_expression_names:
+        written = tmp_path / "table.js"
+        before = module.MODULE.read_text(encoding="utf-8")
+        written.write_text(before.replace("jawOpen", "jaw"), encoding="utf-8")
+        monkeypatch.setattr(module, "MODULE", written)
+        assert (module.module(), module.script()) == (before, module.CLASS.read_text(encoding="utf-8"))
+        monkeypatch.setattr(module, "CLASS", tmp_path / "Table.cs")
+        (tmp_path / "Table.cs").write_text(module.script(), encoding="utf-8")
         monkeypatch.setattr(module, "ROOT", tmp_path)
     elif module is gen_joint_words:
         written = tmp_path / "joint_words.js"
@@ -53,7 +63,9 @@ def stale(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: pytest.Fixtu
     return module, written
 
 
-@pytest.mark.parametrize("stale", [gen_golden, gen_joint_words, gen_kernel_table, gen_meta], indirect=True)
+@pytest.mark.parametrize(
+    "stale", [gen_expression_names, gen_golden, gen_joint_words, gen_kernel_table, gen_meta], indirect=True
+)
 def test_what_is_stale_is_named_and_then_written(
     stale: tuple[ModuleType, Path], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -90,6 +90,25 @@ def test_a_face_moves_by_the_clip_and_by_the_page_as_on_the_desktop(
     assert_drawn(saved(tmp_path / "held.muaavatar", held), 0)
 
 
+def test_a_trackers_names_move_the_nearest_that_an_avatar_has(opened: Open) -> None:
+    """To the bytes that its own names give."""
+    assert AVATAR.rig.expressions
+    names = ("aa", "blink", "nothing", "Smoking")
+    rig = replace(AVATAR.rig, expressions=replace(AVATAR.rig.expressions, names=names))
+    page = opened(a=encode(replace(AVATAR, rig=rig), storage="i8"))
+    page.evaluate(READ)
+    assert load(page) == ""
+    show(page, SPLATS, FRAME, AVATAR.encoding.rate)
+    page.evaluate("avatar.setExpressions({ aa: 0.5, blink: 0.75 })")
+    own = channels(page, 0)
+    page.evaluate("(avatar.setExpressions(null), avatar.setExpressions({ jawOpen: 0.25, eyeBlinkLeft: 1 }))")
+    assert channels(page, 0) != own
+    page.evaluate("avatar.setExpressions({ jawOpen: 0.5, eyeBlink_R: 0.5, cheekPuff: 1 })")
+    assert channels(page, 0) == own
+    said = "(() => { try { avatar.setExpressions({ wink: 1 }) } catch (e) { return e.message } })()"
+    assert page.evaluate(said) == f'setExpressions: the avatar has no expression "wink", only {", ".join(names)}.'
+
+
 def test_weights_of_0_give_the_bytes_of_the_avatar_without(opened: Open, face: Path) -> None:
     """Also after a decode that moved the face."""
     page = opened(a=face.read_bytes(), b=encode(BODY, storage="i8"))

@@ -17,6 +17,7 @@ from mua import rotation
 from mua.arrays import Array
 from mua.characters.gltf.vrm import ROLES
 from mua.characters.read import read_animation, read_surfaces
+from mua.motion.face import own_face
 from mua.motion.load import load_motions
 from mua.motion.match import match_joints
 from mua.motion.read import read_motion
@@ -218,16 +219,20 @@ def test_a_mapping_names_what_names_do_not_tell(tmp_path: Path) -> None:
     assert wrong.startswith('odd.glb: mapping: the motion has no joint "hips", only n0, n1')
 
 
-def test_expressions_of_the_avatar_are_taken_and_others_counted(tmp_path: Path) -> None:
+def test_expressions_move_the_nearest_of_the_avatar_and_others_are_counted(tmp_path: Path) -> None:
     source = person()
     clip = moving(source)
     made, blink = vrma(source, clip), np.linspace(0, 1, len(clip))
     with_expressions(made, blink=blink, happy=1 - blink, aa=0 * blink)
     path = made.save(tmp_path / "face.vrma")
-    found = browser_clip(tmp_path, person(size=0.8), path, expressions=["smile", "happy", "blink"])
-    weights = np.array(found["expressions"]).reshape(-1, 3)
-    np.testing.assert_allclose(weights, np.stack([0 * blink, 1 - blink, blink], axis=1), atol=4 * FLOAT)
-    assert "1 of the motion's 3 expressions are none of the avatar's and are left out." in found["notes"]
+    names = ["smile", "happy", "eyeBlinkLeft", "eyeBlinkRight"]
+    found = browser_clip(tmp_path, person(size=0.8), path, expressions=names)
+    weights = np.array(found["expressions"]).reshape(-1, 4)
+    np.testing.assert_allclose(weights, np.stack([0 * blink, 1 - blink, blink, blink], axis=1), atol=4 * FLOAT)
+    assert "1 of the motion's 3 expressions move none of the avatar's." in found["notes"]
+    [read] = read_motion(path)
+    loaded = own_face(read, clip, names).expressions
+    np.testing.assert_allclose(weights, loaded, atol=4 * FLOAT)
 
 
 def test_weights_of_a_mesh_are_expressions_of_their_names(tmp_path: Path) -> None:

@@ -52,7 +52,8 @@ export { AvatarError, offersVR };
  * @property {(pose: PoseInput | null) => void} setPose shows this pose in place of the clip, until the next one; null gives the avatar
  *   back to its clip. Throws an AvatarError where the pose is wrong
  * @property {(weights: Readonly<Record<string, number>> | null) => void} setExpressions sets weights by name, whatever else moves the
- *   avatar; those that are left out stay, null forgets all. Throws an AvatarError where a name or weight is wrong
+ *   avatar; other names of ARKit, VRM or Oculus' visemes move the nearest that it has. Those that are left out stay, null forgets all.
+ *   Throws an AvatarError where a name or weight is wrong
  * @property {(source: MotionSource, options?: PlayClipOptions) => Promise<PlayedClip | null>} playClip retargets a BVH, glTF, GLB, VRM or
  *   VRMA file and plays it; null where the avatar was taken away, or another clip asked for, meanwhile. Rejects with an AvatarError
  * @property {(rig: RigInfo, options?: {mapping?: Record<string, string>}) => Promise<Follow>} retarget what turns poses of another
