@@ -1,4 +1,4 @@
-"""Write the table of expressions' names for the browser and for Unity, from that of the package; --check compares them."""
+"""Write names of expressions for the browser and for Unity, from those of the package; --check compares them."""
 
 import argparse
 import json
@@ -31,7 +31,9 @@ def module() -> str:
 
 def script() -> str:
     """C# with the same table."""
-    vocabularies = "\n".join(f"            new[]\n            {{\n{_listed(NAMES[name], 16)}\n            }}," for name in ORDER)
+    vocabularies = "\n".join(
+        f"            new[]\n            {{\n{_listed(NAMES[name], 16)}\n            }}," for name in ORDER
+    )
     return f"""{HEAD}using System.Collections.Generic;
 
 namespace Mua.Motion

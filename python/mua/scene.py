@@ -109,6 +109,20 @@ class Motion:
     weights: Mapping[str, Array] = field(default_factory=dict)  # expression to its weights [F], 0 to 1
 
 
+@dataclass(frozen=True)
+class FaceRules:
+    """What a file says of its expressions beside what they move, and of the gaze that turns its eyes."""
+
+    switched: frozenset[str] = frozenset()  # expressions that show wholly above 0.5, else not at all
+    # Expression to which of "blink", "look" and "mouth" it holds back: "block" at any weight, "blend" by its weight.
+    overrides: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+    eyes: tuple[int, ...] = ()  # nodes that gaze turns; none where expressions show it
+    reach: Mapping[str, float] = field(default_factory=dict)  # degrees that it turns them "Out", "In", "Up" and "Down"
+
+
+NO_RULES = FaceRules()
+
+
 @dataclass(frozen=True, eq=False)
 class Scene:
     """Nodes in parent-before-child order with their rest pose, and their skins and parts; metres, Y up."""
@@ -123,6 +137,7 @@ class Scene:
     motions: tuple[Motion, ...]
     notes: tuple[str, ...]
     roles: Mapping[int, str] = field(default_factory=dict)  # node to body part, where the file states it
+    face_rules: FaceRules = NO_RULES
 
     def upwards(self, node: int) -> Iterator[int]:
         """The node, its parent, and so on to the top."""

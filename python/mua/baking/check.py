@@ -12,7 +12,7 @@ from PIL import Image
 from mua.arrays import Array
 from mua.baking.listener import Listener
 from mua.baking.settings import BakeSettings
-from mua.baking.sources import expressions_of, faced, load_baked_character
+from mua.baking.sources import faced, load_baked_character
 from mua.errors import InputError
 from mua.fidelity import report
 from mua.fidelity.compare import Fidelity, compare
@@ -22,6 +22,7 @@ from mua.files.write import replacing, require_writable, write_bytes
 from mua.motion.load import LoadedMotion, counted, load_motions
 from mua.motion.mapping import write_mapping
 from mua.motion.match import JointPair, joint_pairs, match_joints, require_limbs, unmatched_target
+from mua.motion.moved_face import face_of
 from mua.motion.quality import MotionQuality, measure_motion
 from mua.motion.source import SourceMotion
 from mua.pose.clip import Clip
@@ -152,7 +153,7 @@ def _loaded(settings: BakeSettings, character: Character) -> list[LoadedMotion]:
             roles=character.roles,
             feet=settings.feet,
             refuse=False,
-            expressions=expressions_of(character),
+            face=face_of(character),
         )
     ]
 

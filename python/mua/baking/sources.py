@@ -13,6 +13,7 @@ from mua.characters.read import read_character
 from mua.errors import InputError
 from mua.motion.face import with_face
 from mua.motion.load import counted, load_motions, unique_names
+from mua.motion.moved_face import face_of
 from mua.motion.planted_feet import Feet
 from mua.motion.quality import measure_motion
 from mua.pose.clip import Clip
@@ -106,18 +107,13 @@ def load_clips(
             rate=RATE,
             roles=character.roles,
             feet=feet,
-            expressions=expressions_of(character),
+            face=face_of(character),
         ):
             quality = measure_motion(loaded.source, character.skeleton, loaded.clip, loaded.matches)
             require_names(str(path), (), (), [loaded.clip.name])
             clips.append(loaded.clip)
             notes += (*loaded.notes, *quality.flaws)
     return unique_names(clips), list(counted(notes, clips))
-
-
-def expressions_of(character: Character) -> tuple[str, ...]:
-    """The names of a character's expressions."""
-    return () if character.expressions is None else character.expressions.names
 
 
 def faced(
@@ -128,6 +124,7 @@ def faced(
     """The clips with facial motion of a file of its own; and notes. Errors: InputError where there is no face."""
     if face is None:
         return list(clips), []
-    if character.expressions is None:
+    moved = face_of(character)
+    if not (moved.names or moved.eyes):
         raise InputError(f"--face {face}: {character.name} has no expressions (morph targets) that it could move")
-    return with_face(clips, face, character.expressions.names)
+    return with_face(clips, face, moved)

@@ -7,6 +7,7 @@ from pathlib import Path
 from mua.errors import InputError
 from mua.motion.face import own_face
 from mua.motion.match import Matches, match_joints, require_limbs
+from mua.motion.moved_face import NO_FACE, MovedFace
 from mua.motion.planted_feet import Feet, plant_feet
 from mua.motion.read import read_motion
 from mua.motion.retarget import retarget
@@ -37,7 +38,7 @@ def load_motions(
     roles: Mapping[str, str] | None = None,  # joint of `skeleton` to role, where the character's file itself says it
     feet: Feet = "auto",  # whether standing feet are held in place
     refuse: bool = True,  # whether motion that moves no arm, leg or spine of the character is an error, else a note
-    expressions: Sequence[str] = (),  # names of the character's
+    face: MovedFace = NO_FACE,  # what of the character follows a motion's expressions
 ) -> list[LoadedMotion]:
     """The clips of a motion file, or of every file of a directory, on `skeleton`, each with what it was made from.
 
@@ -45,7 +46,7 @@ def load_motions(
     Errors: InputError naming the file where it cannot be read or moves no arm, leg or spine of the character.
     """
     return [
-        replace(put, clip=own_face(source, put.clip, expressions))
+        replace(put, clip=own_face(source, put.clip, face))
         for source in read_motion(path)
         for put in [
             _put_on(

@@ -1,6 +1,6 @@
 """What an expression is by its name, in the spellings of ARKit, VRM, Oculus' visemes and of exporters.
 
-The names are data, expression_names.json, from which tools/gen_expression_names.py makes those of browsers and of Unity.
+The names are data, expression_names.json; tools/gen_expression_names.py makes those of browsers and of Unity from it.
 """
 
 import json

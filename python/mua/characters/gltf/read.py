@@ -161,6 +161,7 @@ def _scene(document: Document, tree: Tree, skins: list[Skin], *, vrm: Vrm) -> Sc
         motions=motions,
         notes=left_out,
         roles={index[node]: role for node, role in vrm.roles.items() if node in index},
+        face_rules=vrm.face_rules(index),
     )
 
 

@@ -10,6 +10,8 @@ from typing import Any
 
 from mua.characters.gltf.document import Document
 from mua.characters.gltf.vrm_expressions import VrmExpression, animated_expressions, read_expressions
+from mua.characters.gltf.vrm_look import EYES, eye_reach, look_node
+from mua.scene import FaceRules
 
 FIRST, SECOND, ANIMATION = "VRM", "VRMC_vrm", "VRMC_vrm_animation"
 SPRINGS, CONSTRAINT, MTOON = "VRMC_springBone", "VRMC_node_constraint", "VRMC_materials_mtoon"
@@ -41,8 +43,23 @@ class Vrm:
     hidden_nodes: frozenset[int] = frozenset()  # nodes whose meshes only the wearer's own camera shows
     hidden_meshes: frozenset[int] = frozenset()
     expressions: tuple[VrmExpression, ...] = ()
+    eye_reach: Mapping[str, float] = field(default_factory=dict)  # degrees that gaze turns the eyes; none: no joints
     expression_nodes: Mapping[int, str] = field(default_factory=dict)  # of an animation: whose x is the weight
+    look_node: int | None = None  # of an animation: whose rotation is the gaze
     notes: tuple[str, ...] = ()
+
+    def face_rules(
+        self,
+        index: Mapping[int, int],  # glTF node to that of a scene
+    ) -> FaceRules:
+        """What the file says of its expressions and its gaze."""
+        eyes = [index[self.bones[eye]] for eye in EYES if self.bones.get(eye) in index]
+        return FaceRules(
+            switched=frozenset(one.name for one in self.expressions if one.switched),
+            overrides={one.name: one.overrides for one in self.expressions if one.overrides},
+            eyes=tuple(eyes) if self.eye_reach else (),
+            reach=self.eye_reach,
+        )
 
     @property
     def roles(self) -> dict[int, str]:
@@ -63,9 +80,11 @@ def read_vrm(document: Document) -> Vrm:
             bones = _bones(document, vrm, where, listed=name == FIRST)
             nodes, meshes = _first_person(document, vrm, where)
             expressions, unlike = read_expressions(document, vrm, where)
+            reach = eye_reach(document, vrm, where, first=name == FIRST)
             notes = (*_credit(vrm), *_not_carried(document, vrm, extensions), *unlike)
             moved = animated_expressions(document, vrm, where) if name == ANIMATION else {}
-            return Vrm(bones, nodes, meshes, () if moved else expressions, moved, notes)
+            look = look_node(document, vrm, where) if name == ANIMATION else None
+            return Vrm(bones, nodes, meshes, () if moved else expressions, reach, moved, look, notes)
     return NO_VRM
 
 

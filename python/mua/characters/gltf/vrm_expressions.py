@@ -1,16 +1,18 @@
 """The expressions of a VRM avatar, of either version: which morph targets each of them moves, and how far."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from mua.characters.gltf.document import Document
 from mua.characters.messages import Messages
 
 _COLOURS = "Colours and textures that an expression changes stay as they are: {}."
-_SWITCHED = "Expressions that the file switches at 0.5 move in between as well: {}."
-_HELD_BACK = "Blinks, looks and mouth shapes are not held back by these expressions, as the file asks: {}."
-_HOLDING = ("overrideBlink", "overrideLookAt", "overrideMouth")
+_RULED = (
+    "Clips that are baked follow what the file says of these expressions (switched at 0.5, or holding back blinks, "
+    "looks and mouths); weights that a player is given show as they are: {}."
+)
+_HOLDING = {"blink": "overrideBlink", "look": "overrideLookAt", "mouth": "overrideMouth"}
 
 
 @dataclass(frozen=True)
@@ -20,6 +22,8 @@ class VrmExpression:
     name: str
     binds: Sequence[tuple[int, int, float]]  # node (VRM 1) or mesh (VRM 0), target, weight
     by_mesh: bool
+    switched: bool = False  # whether it shows wholly above 0.5, else not at all
+    overrides: Mapping[str, str] = field(default_factory=dict)  # "blink", "look" or "mouth" to "block" or "blend"
 
     def weights_of(self, node: int, mesh: int) -> Mapping[int, float]:
         """The weight of each target of a mesh on a node; those it does not name are 0."""
@@ -94,11 +98,14 @@ def _expression(document: Document, name: str, entry: dict[str, Any], at: str, m
         binds.append((int(holder), *_target(document, bind, place, whole=100 if by_mesh else 1)))
     if any(entry.get(field) for field in ("materialColorBinds", "textureTransformBinds", "materialValues")):
         messages.add(_COLOURS, name)
-    if entry.get("isBinary"):
-        messages.add(_SWITCHED, name)
-    if any(entry.get(field, "none") != "none" for field in _HOLDING):
-        messages.add(_HELD_BACK, name)
-    return VrmExpression(name, tuple(binds), by_mesh)
+    switched = bool(entry.get("isBinary"))
+    overrides = {kind: how for kind, key in _HOLDING.items() if (how := entry.get(key, "none")) != "none"}
+    for kind, how in overrides.items():
+        if how not in ("block", "blend"):
+            raise document.error(f"{at}.{_HOLDING[kind]} is {how}, expected none, block or blend")
+    if switched or overrides:
+        messages.add(_RULED, name)
+    return VrmExpression(name, tuple(binds), by_mesh, switched, overrides)
 
 
 def _target(document: Document, bind: dict[str, Any], place: str, *, whole: float) -> tuple[int, float]:

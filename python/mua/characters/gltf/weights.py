@@ -9,6 +9,7 @@ from mua.characters.gltf.document import Document
 from mua.characters.gltf.keys import KeyTrack, read_keys
 from mua.characters.gltf.morphs import stated_names
 from mua.characters.gltf.vrm import Vrm
+from mua.characters.gltf.vrm_look import gaze_weights
 
 
 def weight_tracks(document: Document, animation: Any, where: str, vrm: Vrm) -> list[tuple[str, KeyTrack]]:
@@ -27,7 +28,18 @@ def weight_tracks(document: Document, animation: Any, where: str, vrm: Vrm) -> l
         elif target.path == "translation" and target.node in vrm.expression_nodes:
             track = read_keys(document, animation, where, c, types=("VEC3",))
             found.setdefault(vrm.expression_nodes[target.node], replace(track, values=track.values[:, :1]))
+        elif target.path == "rotation" and target.node == vrm.look_node:
+            for name, track in _of_gaze(read_keys(document, animation, where, c, types=("VEC4",))):
+                found.setdefault(name, track)
     return [*found.items()]
+
+
+def _of_gaze(track: KeyTrack) -> list[tuple[str, KeyTrack]]:
+    """The expressions that look where a node is turned, straight from key to key."""
+    keys = track.values[1::3] if track.kind == "CUBICSPLINE" else track.values
+    kind = "LINEAR" if track.kind == "CUBICSPLINE" else track.kind
+    weights = gaze_weights(keys[:, [3, 0, 1, 2]])
+    return [(name, KeyTrack(track.times, own[:, None], kind)) for name, own in weights.items()]
 
 
 def _of_mesh(document: Document, animation: Any, where: str, c: int) -> list[tuple[str, KeyTrack]]:
