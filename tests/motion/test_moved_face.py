@@ -12,7 +12,7 @@ from mua.arrays import Array
 from mua.characters.read import read_character
 from mua.errors import InputError
 from mua.motion.load import load_motions
-from mua.motion.moved_face import MovedFace, face_of, held_back
+from mua.motion.moved_face import face_of, held_back
 from mua.motion.read import read_motion
 from mua.pose.clip import Clip
 from mua.scene import FaceRules
@@ -80,7 +80,7 @@ def avatar(*, eyes: bool = False, **changes: Any) -> Glb:
         ]
         glb.json["nodes"][2].setdefault("children", []).extend([count, count + 1])
         bones |= {"leftEye": {"node": count}, "rightEye": {"node": count + 1}}
-    bind = {
+    bind: dict[str, Any] = {
         name: {"morphTargetBinds": [{"node": 3, "index": index, "weight": 1}]}
         for index, name in enumerate(("happy", "blink", "aa"))
     }

@@ -42,6 +42,8 @@ def test_every_name_is_known_in_usual_spellings(name: str) -> None:
         ("AK_09_EyeBlinkLeft", "eyeBlinkLeft"),
         ("AA_VI_01_PP", "viseme_PP"),
         ("Fcl_MTH_A", "aa"),
+        ("h_expressions.ReyeClose_h", "eyeBlinkRight"),  # Autodesk Character Generator's
+        ("h_expressions.MouthOpen_h", "jawOpen"),
         ("Fcl_EYE_Close_L", "blinkLeft"),
         ("blendShape1.MTH_A", "aa"),
         ("blink_l", "blinkLeft"),

@@ -233,7 +233,7 @@ def test_expressions_move_the_nearest_of_the_avatar_and_others_are_counted(tmp_p
     assert "1 of the motion's 3 expressions move none of the avatar's." in found["notes"]
     [read] = read_motion(path)
     loaded = own_face(read, clip, MovedFace(tuple(names))).expressions
-    np.testing.assert_allclose(weights, loaded, atol=4 * FLOAT)
+    np.testing.assert_allclose(weights, np.asarray(loaded), atol=4 * FLOAT)
 
 
 def test_weights_of_a_mesh_are_expressions_of_their_names(tmp_path: Path) -> None:
