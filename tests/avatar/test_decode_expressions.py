@@ -200,6 +200,13 @@ def test_weights_beyond_0_and_1_are_held_there(avatar: Avatar) -> None:
         assert found.centres.tobytes() == expected.centres.tobytes()
 
 
+def test_names_that_the_avatar_lacks_move_the_nearest_that_it_has(avatar: Avatar) -> None:
+    own = {"jawOpen": 0.5 * 0.7, "eyeBlinkLeft": 0.25}
+    found, expected = (avatar.decode("wave", 3, expressions=weights) for weights in ({"aa": 0.5, "blink": 0.25}, own))
+    np.testing.assert_allclose(found.centres, expected.centres, rtol=0, atol=1e-6)
+    assert found.centres.tobytes() != avatar.decode("wave", 3, expressions={}).centres.tobytes()
+
+
 def test_wrong_weights_are_refused_in_a_sentence(avatar: Avatar) -> None:
     with pytest.raises(InputError, match="expression is 'smile'; the avatar's expressions: jawOpen, eyeBlinkLeft"):
         avatar.decode("wave", 3, expressions={"smile": 1.0})

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mua.arrays import Array
-from mua.pose.expression_names import STAND_INS, match_expressions
+from mua.pose.expression_names import STAND_INS, match_expressions, set_weights
 from mua.pose.expression_vocabulary import ARKIT, NAMES, VISEMES, VRM, known_expression
 
 EVERY = (*ARKIT, *VRM, *VISEMES)
@@ -124,6 +124,12 @@ def test_same_name_goes_before_another_spelling() -> None:
 
 def test_names_of_nobody_match_only_themselves() -> None:
     assert weights(("Smoking", "jawOpen"), {"Smoking": 0.3, "smoke": 1}) == {"Smoking": 0.3}
+
+
+def test_weights_by_whatever_names_become_those_that_follow() -> None:
+    assert set_weights(VRM, {"jawOpen": 2, "cheekPuff": 1}) == {"aa": 1}
+    assert set_weights(("aa", "x"), {"jawOpen": 0.5, "mouthClose": 0.75, "x": -1}) == {"aa": 0, "x": 0}
+    assert set_weights(VRM, {"Smoking": 1}) == set_weights((), {"aa": 1}) == set_weights(VRM, {}) == {}
 
 
 def test_no_names_make_an_empty_matrix() -> None:

@@ -16,6 +16,7 @@ from mua.avatar.decode import PoseWindow, Splats, decode, decode_clip_frame
 from mua.avatar.model import Model
 from mua.errors import InputError
 from mua.pose.clip import Clip
+from mua.pose.expression_names import set_weights
 from mua.pose.resample import frames_at
 from mua.pose.skeleton import Pose
 from mua.rig.surface import Surface
@@ -82,17 +83,18 @@ class Avatar(Model):
         return () if self.rig.expressions is None else self.rig.expressions.names
 
     def weights(self, named: Mapping[str, float]) -> Array:
-        """Weights [E] in the order of `expressions`, held to 0 to 1; 0 for those that are not named.
+        """Weights [E] in the order of `expressions`, held to 0 to 1; 0 for those that nothing named moves.
 
-        Errors: InputError for a name that the avatar does not have, and for a weight that is no finite number.
+        A name of ARKit, VRM or Oculus' visemes that the avatar does not have moves the nearest that it has.
+        Errors: InputError for a name that moves nothing, and for a weight that is no finite number.
         """
-        weights = np.zeros(len(self.expressions))
         for name, weight in named.items():
-            if name not in self.expressions:
+            finite_array(weight, f"weight of expression {name!r}", ())
+            if not (isinstance(name, str) and set_weights(self.expressions, {name: 1.0})):
                 held = ", ".join(self.expressions) or "none"
                 raise InputError(f"expression is {describe(name)}; the avatar's expressions: {held}")
-            weights[self.expressions.index(name)] = finite_array(weight, f"weight of expression {name!r}", ())
-        return np.clip(weights, 0, 1)
+        followed = set_weights(self.expressions, named)
+        return np.array([followed.get(name, 0.0) for name in self.expressions])
 
     def at_level(self, level: int) -> "Avatar":
         """The same avatar with fewer splats: the texture has half as many texels along a side, `level` times.

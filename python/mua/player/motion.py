@@ -15,6 +15,7 @@ from mua.motion.face import with_face
 from mua.motion.load import counted, load_motions, unique_names
 from mua.motion.moved_face import MovedFace
 from mua.pose.clip import Clip
+from mua.pose.expression_names import set_weights
 from mua.pose.resample import resample
 
 LIVE = "live"  # name of the clip that stands for what another program sends
@@ -103,12 +104,13 @@ def with_weights(
     weights: Array | None,  # [E] of a clip's frame; None: all 0
     named: Mapping[str, float],
 ) -> Array | None:
-    """The weights of a frame, but those that are named; names of another avatar's expressions do nothing."""
-    known = {names.index(name): weight for name, weight in named.items() if name in names}
-    if not known:
+    """The weights of a frame, but those that follow what is named; names that move nothing here do nothing."""
+    set_here = set_weights(names, named)
+    if not set_here:
         return weights
     held = np.zeros(len(names)) if weights is None else np.array(weights, dtype=float)
-    held[list(known)] = list(known.values())
+    for name, weight in set_here.items():
+        held[names.index(name)] = weight
     return held
 
 
@@ -121,8 +123,8 @@ def expressed(clip: Clip, names: Sequence[str], named: Mapping[str, float]) -> C
 
 
 def require_expressions(names: Sequence[str], named: Mapping[str, float], *, file: Path) -> None:
-    """Raises InputError for an expression that the avatar of a file does not have."""
+    """Raises InputError for an expression that moves none of those of the avatar of a file."""
     for name in named:
-        if name not in names:
+        if not set_weights(names, {name: 1.0}):
             held = ", ".join(names) or "no expressions"
             raise InputError(f"--expressions has {name!r}; {file} has {held}")

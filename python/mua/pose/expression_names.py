@@ -7,6 +7,7 @@ python/mua/web/names/match.js, unity-package/Runtime/Motion/ExpressionNames.cs.
 """
 
 from collections.abc import Mapping, Sequence
+from functools import lru_cache
 
 import numpy as np
 
@@ -47,6 +48,19 @@ def match_expressions(
         for column, weight in by_vocabulary[min(by_vocabulary)]:
             matrix[row, column] = weight
     return matrix
+
+
+def set_weights(
+    names_of_avatar: Sequence[str],  # E
+    named: Mapping[str, float],
+) -> dict[str, float]:
+    """The weights, held to 0 to 1, of an avatar's expressions that follow weights given by whatever names."""
+    matrix = _matched(tuple(names_of_avatar), tuple(named))
+    found = np.clip(matrix @ np.array([*named.values()], float), 0, 1)
+    return {name: float(found[row]) for row, name in enumerate(names_of_avatar) if matrix[row].any()}
+
+
+_matched = lru_cache(maxsize=256)(match_expressions)  # whoever sets weights sets them frame by frame
 
 
 def _rows(names: Sequence[str]) -> dict[str, int]:
