@@ -75,6 +75,7 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (directory / "walk.bvh").write_text(bvh_text(person(), walk(person(size=1.0))))
     rows = (f"00:00:0{k // 60}:{k % 60},1,{min(k / 4, 1)}\n" for k in range(120))  # at 60 Hz
     (directory / "talk.csv").write_text("Timecode,BlendShapeCount,JawOpen\n" + "".join(rows))
+    (directory / "names.json").write_text(json.dumps({"jawOpen": "aa"}))
     for name in ("wave", "sway"):
         (directory / f"{name}.bvh").write_text(BVH.replace("spine", "thing"))
     for name, joint in (("spine", "spine"), ("head", "head")):

@@ -3,6 +3,7 @@
 import json
 from pathlib import Path
 
+import gltf_files
 import numpy as np
 import pytest
 import typer
@@ -159,3 +160,19 @@ def test_what_is_measured_of_a_motion_is_shown_with_its_unit(capsys: pytest.Capt
     rows = [line.replace("│", " ").split() for line in capsys.readouterr().out.splitlines()]
     assert ["walk", "1.2°", "4%", "8°", "-3°", "12°", "-0.013", "m", "0.33", "m/s"] in rows
     assert ["wave", "0.0°"] in rows
+
+
+def test_leaves_names_of_expressions_to_correct(tmp_path: Path) -> None:
+    character, output = tmp_path / "hero.glb", tmp_path / "a.muaavatar"
+    lean = np.where(gltf_files.POINTS[:, 1:2] > 1, [[0.1, 0, 0]], 0)
+    glb = gltf_files.body()
+    gltf_files.primitive(glb)["targets"] = [{"POSITION": glb.accessor(lean)}, {"POSITION": glb.accessor(-lean)}]
+    glb.json["meshes"][0]["extras"] = {"targetNames": ["Fcl_MTH_A", "mund"]}
+    glb.save(character)
+    run(character, "--check", "--texels", 64, "-o", output)
+    names = tmp_path / "a_expressions.json"
+    assert json.loads(names.read_text()) == {"Fcl_MTH_A": "aa", "mund": ""}
+    names.write_text(json.dumps({"Fcl_MTH_A": "aa", "mund": "jawOpen"}))
+    figures = tmp_path / "a.json"
+    run(character, "--check", "--texels", 64, "-o", output, "--json", figures, "--expression-names", names)
+    assert [*json.loads(figures.read_text())["fidelity"]["expressions"]] == ["at rest", "Fcl_MTH_A", "jawOpen"]

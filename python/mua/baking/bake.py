@@ -87,6 +87,10 @@ def bake(
             default="as the file says",
         ),
     ] = (),
+    expression_names: Annotated[
+        PathLike | Mapping[str, str] | None,
+        Option("JSON file that gives expressions of the character other names.", default="as the file calls them"),
+    ] = None,
     mapping: Annotated[
         PathLike | Mapping[str, str] | None,
         Option(
@@ -132,10 +136,10 @@ def bake(
     """Record a teacher of `character`, distil it and write a `.muaavatar`, as mua-bake does: minutes to hours.
 
     The arguments are the options of mua-bake (docs/bake.md) by the same names, and their errors name the options. Where
-    an option may be repeated, one value or several are given; `mapping` is a file or a dictionary, `detail` and
-    `alpha` are dictionaries such as `{"head": 2}`. Without a `character` the procedural one is baked; where it is the
-    folder of a capture, a teacher is trained first, and a `teacher` is the folder that `mua.teach` wrote. A call that
-    was interrupted goes on where it stopped when the same one is made again.
+    an option may be repeated, one value or several are given; `mapping` and `expression_names` are files or
+    dictionaries, `detail` and `alpha` dictionaries such as `{"head": 2}`. Without a `character` the procedural one is
+    baked; where it is the folder of a capture, a teacher is trained first, and a `teacher` is the folder that
+    `mua.teach` wrote. A call that was interrupted goes on where it stopped when the same one is made again.
 
     `listener` receives stages, steps and notes; without one they go to the log "mua" of Python's logging.
 

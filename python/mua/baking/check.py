@@ -13,6 +13,7 @@ from mua.arrays import Array
 from mua.baking.listener import Listener
 from mua.baking.settings import BakeSettings
 from mua.baking.sources import faced, load_baked_character
+from mua.characters.expression_file import write_expression_names
 from mua.errors import InputError
 from mua.fidelity import report
 from mua.fidelity.compare import Fidelity, compare
@@ -46,7 +47,7 @@ class Check:
 
 
 def check(settings: BakeSettings, listener: Listener) -> Check:
-    """Measure fidelity and motion, and leave an image and a mapping file to start from beside the output.
+    """Measure fidelity and motion, and leave images, and files of names to start from, beside the output.
 
     Raises InputError where the character or a motion cannot be read, or where nothing can be written.
     """
@@ -67,6 +68,9 @@ def check(settings: BakeSettings, listener: Listener) -> Check:
         if fidelity.face is not None:
             written.append(settings.beside("_check_face.png"))
             write_sheet(written[-1], face_sheet(fidelity.face))
+    if character.expressions is not None:
+        written.append(settings.beside("_expressions.json"))
+        write_expression_names(written[-1], character.expressions.names)
     if pairs or unmatched:
         written.append(settings.beside("_mapping.json"))
         write_mapping(written[-1], pairs, unmatched)

@@ -9,6 +9,7 @@ from typing import Any
 from mua.atlas.detail import read_detail
 from mua.baking.settings import BakeSettings
 from mua.characters.alpha import read_alphas
+from mua.characters.expression_file import read_expression_names
 from mua.characters.facing import Facing
 from mua.characters.figure_size import FigureSize
 from mua.characters.formats import require_scene
@@ -33,6 +34,7 @@ def bake_settings(options: Mapping[str, Any]) -> BakeSettings:
         student=student_settings(options),
         motions=options["motion"],
         mapping=_joints(options["mapping"]),
+        expression_names=_expressions(options["expression_names"]),
         alphas=read_alphas(_as_texts(options["alpha"])),
         detail=read_detail(_as_texts(options["detail"]), uv=options["uv"]),
         facing=Facing(options["facing"], options["turn"]),
@@ -76,7 +78,7 @@ def _check_budget(settings: BakeSettings) -> None:
 
 def _with_trained_teacher(settings: BakeSettings, options: Mapping[str, Any]) -> BakeSettings:
     """The settings of a bake whose teacher is, or is going to be, trained on images."""
-    for name in ("uv", "detail", "scale", "height", "facing", "turn", "leave_out", "alpha"):
+    for name in ("uv", "detail", "scale", "height", "facing", "turn", "leave_out", "alpha", "expression_names"):
         if options[name] not in (None, (), {}, "auto", 0.0):
             raise InputError(
                 f"--{name.replace('_', '-')}: the capture's own capture.json says it; leave the option out"
@@ -109,6 +111,11 @@ def work_directory(output: Path, work: Path | None) -> Path:
 def _joints(mapping: Path | Mapping[str, str] | None) -> Mapping[str, str] | None:
     """Target joint to source joint, from a mapping or the file that holds one."""
     return read_mapping(mapping) if isinstance(mapping, Path) else mapping
+
+
+def _expressions(names: Path | Mapping[str, str] | None) -> Mapping[str, str] | None:
+    """Names of expressions, or those of the file that holds them."""
+    return read_expression_names(names) if isinstance(names, Path) else names
 
 
 def _as_texts(pairs: Mapping[str, object] | tuple[str, ...]) -> tuple[str, ...]:

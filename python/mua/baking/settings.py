@@ -36,6 +36,7 @@ class BakeSettings:
     motion_range: MotionRange = "full"  # whether a range of motion made for the rig is recorded too
     leave_out: tuple[str, ...] = ()  # meshes, nodes or materials of the file that are no part of the character
     alphas: Alphas = field(default_factory=dict)  # how materials are transparent, where the file is wrong
+    expression_names: Mapping[str, str] | None = None  # what expressions of the file are to be called
     uv: UvMode = "auto"
     detail: Detail = field(default_factory=dict)  # beyond what is finer by default
     size: FigureSize = AS_FOUND

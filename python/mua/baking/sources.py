@@ -35,6 +35,7 @@ def load_baked_character(settings: BakeSettings) -> Character:
         leave_out=settings.leave_out,
         alphas=settings.alphas,
         facing=settings.facing,
+        expression_names=settings.expression_names,
     )
 
 
@@ -48,6 +49,7 @@ def load_character(
     leave_out: Sequence[str] = (),
     alphas: Alphas = NOTHING_SAID,
     facing: Facing = AS_SHOWN,
+    expression_names: Mapping[str, str] | None = None,
 ) -> Character:
     """The character in the file at `path` less what `leave_out` names, or the procedural one where no path is given.
 
@@ -64,6 +66,7 @@ def load_character(
             leave_out=leave_out,
             alphas=alphas,
             facing=facing,
+            expression_names=expression_names,
         )
         require_names(str(path), [character.name], character.skeleton.names, ())
         return character
@@ -71,6 +74,8 @@ def load_character(
         raise InputError("--scale and --height need a character from a file; give CHARACTER")
     if facing != AS_SHOWN:
         raise InputError("--facing and --turn need a character from a file; give CHARACTER")
+    if expression_names is not None:
+        raise InputError("--expression-names: needs a character from a file; give CHARACTER")
     if leave_out:
         raise InputError(f"--leave-out {leave_out[0]}: needs a character from a file; give CHARACTER")
     for name, alpha in alphas.items():

@@ -1,6 +1,6 @@
 """Merges the pieces of a scene file to one surface on one rigid skeleton; shared by all readers."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -12,6 +12,7 @@ from mua.characters.alpha import NOTHING_SAID, Alphas, with_alphas
 from mua.characters.bind_pose import Bind, bind_pose
 from mua.characters.collapsed import without_collapsed
 from mua.characters.correction import corrected
+from mua.characters.expression_file import with_expression_names
 from mua.characters.expressions import fingerprints, joined_targets, with_weights
 from mua.characters.facing import AS_SHOWN, Facing
 from mua.characters.messages import UNHELD, Messages
@@ -53,14 +54,16 @@ def assemble(
     leave_out: Sequence[str] = (),
     alphas: Alphas = NOTHING_SAID,
     facing: Facing = AS_SHOWN,
+    expression_names: Mapping[str, str] | None = None,
 ) -> Surfaces:
     """Merge a scene's parts into one welded mesh on rigid joints, upright, facing +Z and in metres.
 
     `leave_out` names meshes, nodes or materials whose triangles are no part of the character; `alphas` says how
-    materials are transparent where the file is wrong.
+    materials are transparent where the file is wrong, `expression_names` what its expressions are to be called.
     Raises an InputError that names `path` where no skinned triangle is left, or where it holds no such name.
     """
     scene = with_alphas(without(scene, leave_out, path), alphas, path)
+    scene = with_expression_names(scene, expression_names or {}, path)
     if not any(len(part.faces) for part in scene.parts):
         still = any(note.startswith(UNHELD.partition("{")[0]) for note in scene.notes)
         advice = "; add a skeleton in Blender or with Mixamo" if still else ""

@@ -1,6 +1,6 @@
 """One way in for characters of any file format."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from mua.atlas.detail import Detail, UvMode
@@ -27,14 +27,19 @@ def read_surfaces(
     leave_out: Sequence[str] = (),
     alphas: Alphas = NOTHING_SAID,
     facing: Facing = AS_SHOWN,
+    expression_names: Mapping[str, str] | None = None,
 ) -> Surfaces:
     """Read a rigged character by its suffix, less the meshes, nodes or materials that `leave_out` names.
 
-    `alphas` says how materials are transparent where the file is wrong.
+    `alphas` says how materials are transparent where the file is wrong, `expression_names` what expressions are to be
+    called.
     Raises an InputError where the suffix is unknown, the file is missing, holds no mesh on a skeleton, or nothing has
     such a name.
     """
-    return resized(assemble(_scene(path), path, leave_out=leave_out, alphas=alphas, facing=facing), size, path)
+    surfaces = assemble(
+        _scene(path), path, leave_out=leave_out, alphas=alphas, facing=facing, expression_names=expression_names
+    )
+    return resized(surfaces, size, path)
 
 
 def _scene(path: Path) -> Scene:
@@ -74,7 +79,10 @@ def read_character(
     leave_out: Sequence[str] = (),
     alphas: Alphas = NOTHING_SAID,
     facing: Facing = AS_SHOWN,
+    expression_names: Mapping[str, str] | None = None,
 ) -> Character:
     """Read a rigged, textured character and bring its materials into one atlas of `atlas_size` texels a side."""
-    surfaces = read_surfaces(path, size=size, leave_out=leave_out, alphas=alphas, facing=facing)
+    surfaces = read_surfaces(
+        path, size=size, leave_out=leave_out, alphas=alphas, facing=facing, expression_names=expression_names
+    )
     return build_atlas(surfaces, uv=uv, size=atlas_size, detail=detail)
