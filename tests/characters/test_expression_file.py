@@ -28,8 +28,8 @@ def test_expressions_get_the_names_that_are_given(tmp_path: Path) -> None:
 
 
 def test_expressions_of_one_name_move_together(tmp_path: Path) -> None:
-    path = with_targets(["mouth", "teeth"], [UP, AHEAD]).save(tmp_path / "hero.glb")
-    surfaces = read_surfaces(path, expression_names=dict.fromkeys(("mouth", "teeth"), "jawOpen"))
+    path = with_targets(["JawOpen", "teeth"], [UP, AHEAD]).save(tmp_path / "hero.glb")
+    surfaces = read_surfaces(path, expression_names=dict.fromkeys(("JawOpen", "teeth"), "jawOpen"))
     assert names_of(surfaces) == ("jawOpen",)
     assert_top_moves(surfaces, "jawOpen", UP + AHEAD)
 
@@ -48,10 +48,10 @@ def test_clips_and_rules_of_the_file_follow(tmp_path: Path) -> None:
 
 
 def test_a_file_to_start_from_changes_nothing_until_it_is_edited(tmp_path: Path) -> None:
-    path = with_targets(["mund", "Fcl_MTH_A"], [UP, AHEAD]).save(tmp_path / "hero.glb")
+    path = with_targets(["mund", "A", "Fcl_MTH_A"], [UP, AHEAD, UP]).save(tmp_path / "hero.glb")
     before = names_of(read_surfaces(path))
     write_expression_names(tmp_path / "names.json", before)
-    assert (tmp_path / "names.json").read_text() == '{\n  "mund": "",\n  "Fcl_MTH_A": "aa"\n}\n'
+    assert (tmp_path / "names.json").read_text() == '{\n  "mund": "",\n  "A": "aa",\n  "Fcl_MTH_A": ""\n}\n'
     names = read_expression_names(tmp_path / "names.json")
     assert names_of(read_surfaces(path, expression_names=names)) == before
 

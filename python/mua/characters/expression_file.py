@@ -1,6 +1,7 @@
 """What a person says a character's expressions are: a file of names, and the scene under these names."""
 
 import json
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -8,6 +9,7 @@ from pathlib import Path
 from mua.characters.messages import listed
 from mua.errors import InputError
 from mua.files.write import write_bytes
+from mua.pose.expression_names import rows_of
 from mua.pose.expression_vocabulary import known_expression
 from mua.scene import Scene
 
@@ -30,15 +32,16 @@ def read_expression_names(path: Path) -> dict[str, str]:
 
 
 def write_expression_names(path: Path, expressions: Sequence[str]) -> None:
-    """Write a file to start from: what each expression is taken for, nothing where it is of no vocabulary."""
-    names = {expression: known_expression(expression) or "" for expression in expressions}
+    """Write a file to start from: the name by which trackers move each expression, nothing where they do not."""
+    names = dict.fromkeys(expressions, "") | {expressions[row]: name for name, row in rows_of(expressions).items()}
     write_bytes(path, (json.dumps(names, indent=2, ensure_ascii=False) + "\n").encode())
 
 
 def with_expression_names(scene: Scene, names: Mapping[str, str], path: Path) -> Scene:
     """The scene with expressions under other names; those of one name move together, as one.
 
-    An expression that means its name already keeps its own. Raises an InputError for one that `path` does not have.
+    An expression that alone means its name already keeps its own.
+    Errors: InputError for an expression that the file at `path` does not have.
     """
     held = dict.fromkeys(target.name for part in scene.parts for target in part.targets)
     for expression in names:
@@ -46,7 +49,8 @@ def with_expression_names(scene: Scene, names: Mapping[str, str], path: Path) ->
             raise InputError(
                 f"{path}: --expression-names: it has no expression {expression!r}, only {listed([*held]) or 'none'}"
             )
-    new = {old: name for old, name in names.items() if known_expression(old) != name}
+    shared = {name for name, count in Counter(names.values()).items() if count > 1}
+    new = {old: name for old, name in names.items() if name in shared or known_expression(old) != name}
     rules = scene.face_rules
     return replace(
         scene,

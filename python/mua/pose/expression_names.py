@@ -30,7 +30,7 @@ def match_expressions(
     moves its own expression moves no other, and an expression that its own source moves follows no other.
     """
     matrix = np.zeros((len(names_of_avatar), len(source_names)), np.float32)
-    row_of = _rows(names_of_avatar)
+    row_of = rows_of(names_of_avatar)
     exact = {name: row for row, name in enumerate(names_of_avatar)}
     direct = [exact.get(name, row_of.get(known_expression(name) or "")) for name in source_names]
     own = {row for row in direct if row is not None}
@@ -63,7 +63,7 @@ def set_weights(
 _matched = lru_cache(maxsize=256)(match_expressions)  # whoever sets weights sets them frame by frame
 
 
-def _rows(names: Sequence[str]) -> dict[str, int]:
+def rows_of(names: Sequence[str]) -> dict[str, int]:
     """The row of each known expression among an avatar's; one in its own spelling goes before one of like meaning."""
     rows: dict[str, int] = {}
     for row in sorted(range(len(names)), key=lambda row: not is_own_spelling(names[row])):
