@@ -87,7 +87,7 @@ def measure(recording: Recording, name: str, points: list[int], device: torch.de
     """A row for each point."""
     settings = replace(preset(name), texels=recording.rig.texels.size, frames=recording.count())
     key = run_key((recording.fingerprint(), settings.pictures), [])
-    kept = Shared(recording.directory.with_suffix(".ranks"), key)
+    kept = Shared(recording.directory.parent / "ranks", key)
     kept.directory.mkdir(exist_ok=True)
     run = Run(torch.Generator().manual_seed(settings.seed), kept, say, device)
     looking = run.alone(KEPT)
