@@ -1,8 +1,8 @@
 """Measure everything that a graphics card makes faster, and write a page of tables for docs/research.
 
 python tools/measure_gpu.py [--quick] [-o PAGE]: distils, teaches, draws for training and plays, on the processor and,
-where torch finds one, on the card; some five minutes there. --quick takes the smallest sizes, to see that it runs. What
-fails stands in the table with its last line, and the rest goes on.
+where torch finds one, on the card. The page grows row by row. --quick takes the smallest sizes, to see that it runs.
+What fails stands in the table with its last line, and the rest goes on.
 """
 
 import argparse
@@ -12,6 +12,7 @@ import re
 import subprocess
 import sys
 import tempfile
+from collections.abc import Iterator
 from dataclasses import dataclass
 from datetime import date
 from importlib.util import find_spec
@@ -58,15 +59,21 @@ def main() -> None:
     )
     given = parser.parse_args()
     sizes = QUICK if given.quick else FULL
-    devices = ("cpu", "cuda") if torch.cuda.is_available() else ("cpu",)
+    tables: dict[str, list[str]] = {"training": [], "frames": []}
     with tempfile.TemporaryDirectory() as scratch:
-        folder = Path(scratch)
-        training = [bake(folder, sizes), *(distil(folder, device, sizes) for device in devices)]
-        training += [teach(folder, device, sizes) for device in devices]
-        training += [rasterise(folder, device, sizes) for device in devices]
-        frames = [play(folder, preset, sizes) for preset in sizes.presets]
-    write_bytes(given.output, page(sizes, training, frames).encode())
+        for table, measured in measurements(Path(scratch), sizes):
+            tables[table].append(measured)
+            write_bytes(given.output, page(sizes, **tables).encode())  # what stops it leaves what was measured
     print(given.output)
+
+
+def measurements(folder: Path, sizes: Sizes) -> Iterator[tuple[str, str]]:
+    """The table that a row belongs to, and the row; of a card first, which takes less time."""
+    devices = ("cuda", "cpu") if torch.cuda.is_available() else ("cpu",)
+    yield from (("frames", play(folder, preset, sizes)) for preset in sizes.presets)
+    yield "training", bake(folder, sizes)
+    for measure in (distil, rasterise, teach):
+        yield from (("training", measure(folder, device, sizes)) for device in devices)
 
 
 def bake(folder: Path, sizes: Sizes) -> str:

@@ -9,14 +9,13 @@ Both branches are trained as mua-train does; the mesh is the teacher's. Errors a
 import argparse
 import sys
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
 import numpy as np
 import torch
 from choose_ranks import costs, user_rows
-from torch import Tensor
 
 import mua.cli  # noqa: F401 first of all: it sets how torch's threads wait
 from mua.avatar.camera import orbit
@@ -28,32 +27,23 @@ from mua.recording import Recording, WholeFrame
 from mua.splatting.posing import TorchRig, pose_splats
 from mua.splatting.projection import Eye
 from mua.splatting.rasterise import rasterise
+from mua.student.budget import Sizes
 from mua.student.distil import describe_frames, prepare
 from mua.student.model import Student
 from mua.student.sensitivity import measure_sensitivities
 from mua.student.settings import PRESETS, Ranks, Settings, preset
 from mua.student.source import hold
-from mua.student.stages import BRANCHES, Samples, fit_branch, mean_lowpass
+from mua.student.stages import BRANCHES, fit_branch, mean_lowpass
 from mua.training.checkpoint import Checkpoints, run_key
 from mua.training.optimise import Progress, Run
 from mua.wavelets import Bands
 
-
-@dataclass(frozen=True)
-class Point:
-    """Sizes of a student."""
-
-    geometry: Ranks
-    appearance: Ranks
-    hidden: int
-
-
 POINTS = (
-    Point(preset("paper").geometry, preset("paper").appearance, hidden=384),
-    Point(Ranks(64, 128, 64), Ranks(128, 128, 128), hidden=384),
-    Point(Ranks(32, 64, 32), Ranks(96, 128, 64), hidden=384),
-    Point(Ranks(32, 64, 8), Ranks(64, 128, 32), hidden=384),
-    Point(Ranks(32, 64, 8), Ranks(64, 128, 32), hidden=256),
+    Sizes(PRESETS["paper"].geometry, PRESETS["paper"].appearance, components=128, hidden=384),
+    Sizes(Ranks(64, 128, 64), Ranks(128, 128, 128), components=128, hidden=384),
+    Sizes(Ranks(32, 64, 32), Ranks(96, 128, 64), components=128, hidden=384),
+    Sizes(Ranks(32, 64, 8), Ranks(64, 128, 32), components=128, hidden=384),
+    Sizes(Ranks(32, 64, 8), Ranks(64, 128, 32), components=128, hidden=256),
 )
 KEPT = "sensitivities of images"
 FRAMES, AT_ONCE = 200, 20  # of each kind whose subbands are compared, and how many of them at once
@@ -97,7 +87,7 @@ def measure(recording: Recording, name: str, points: list[int], device: torch.de
         own = replace(settings, **vars(point))
         student = fitted(recording, own, seen, run)
         ranks = (" ".join(map(str, vars(part).values())) for part in (point.geometry, point.appearance))
-        flops, parameters = costs(replace(own, texels=768, components=128)) / (1e9, 1e6)
+        flops, parameters = costs(replace(own, texels=768)) / (1e9, 1e6)
         near = (first_order(student, recording, seen), drawn(student, recording))
         found = (" / ".join(f"{each:.2f}" for each in kinds) for kinds in near)
         yield " | ".join([*ranks, f"{point.hidden}", f"{flops:.3f}", f"{parameters:.1f}", *found]) + " |"
@@ -123,13 +113,10 @@ def fitted(recording: Recording, settings: Settings, seen: Bands, run: Run) -> S
             sensitivities=seen,
             frames=counts,
         )
-    with torch.no_grad():
-        student.static.copy_(samples.mean_texture.to(run.device).T - lowpass(student, samples))
-    return student.requires_grad_(False).eval()
-
-
-def lowpass(student: Student, samples: Samples) -> Tensor:
-    return student.mean_lowpass() if samples.weights is None else mean_lowpass(student, samples)
+    student.requires_grad_(False).eval()
+    low = student.mean_lowpass() if counts is None else mean_lowpass(student, samples)
+    student.static.copy_(samples.mean_texture.to(run.device).T - low)
+    return student
 
 
 @torch.no_grad()
