@@ -1,0 +1,33 @@
+"""Students of several ranks beside their teacher."""
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+import torch
+import train_ranks
+from choose_ranks import costs
+from compared import SETTINGS, smooth_recording
+
+from mua.student.budget import Sizes
+from mua.student.settings import Ranks, preset
+from mua.training.schedule import Schedule
+
+FEW, MORE = (Sizes(Ranks(rank, rank, rank), Ranks(rank, rank, rank), components=4, hidden=16) for rank in (1, 8))
+
+
+def test_more_ranks_cost_more_and_come_nearer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    recording = smooth_recording(tmp_path / "hero.work" / "recording")
+    quick = replace(SETTINGS, pictures=2, finetune=Schedule(steps=5, batch=4, lr=1e-4))
+    monkeypatch.setattr(train_ranks, "preset", lambda _: quick)
+    monkeypatch.setattr(train_ranks, "POINTS", (FEW, MORE))
+    rows = list(train_ranks.measure(recording, "quick", [0, 1], torch.device("cpu")))
+    few, more = ([float(number) for number in re.findall(r"\d+\.\d+", row)] for row in rows)
+    assert all(one > other for one, other in zip(more[:3], few[:3], strict=True))  # both costs, training to first order
+    assert more[4] > few[4]  # training, as drawn
+    sized = replace(preset("paper"), **vars(MORE))
+    assert more[0] == pytest.approx(costs(sized)[0] / 1e9, abs=5e-4)
+
+    monkeypatch.setattr(train_ranks, "measure_sensitivities", None)
+    assert list(train_ranks.measure(recording, "quick", [1], torch.device("cpu"))) == rows[1:]
