@@ -10,6 +10,8 @@ namespace Mua.Format
         public const double Largest = 65504.0;
         public const int UnpackedTimes = 16;
         public const int UnpackedRoom = 1048576;
+        public const double LeastStep = 5.960464477539063e-08;
+        public const double LargestStep = 1.0;
         public const int Stages = 5;
         public const int MaxJoints = 4096;
         public const int MaxLayers = 64;
