@@ -1,8 +1,8 @@
-"""Tensors packed for the network, deflated as planes of bytes or as steps; and unpacked, never beyond what a file may claim.
+"""Tensors packed for the network, their bytes in planes and deflated; and unpacked, never beyond what a file may claim.
 
 In planes, the bytes of equal weight stand together: all first bytes of the elements, then all second ones. Halves whose
-rows are multiples of a power of two, as `mua.asset.rounding` makes them, are stored as those multiples: i8 where they are
-small, else steps, numbers of 16 bits whose second bytes are mostly 0.
+rows are multiples of a power of two, as `mua.asset.rounding` makes them, are stored as those multiples: as i8 where
+they are small, else as steps, integers of 16 bits whose second bytes are mostly 0.
 """
 
 import math
@@ -53,7 +53,8 @@ def _forms(tensor: Tree) -> Iterator[Tree]:
         steps = (values.reshape(rows, -1) / scale[:, None]).reshape(-1)
         most = np.abs(steps).max()
         if most <= MOST_OF_BYTE:
-            yield {**tensor, "type": "I8", "data": steps.astype(np.int8).view(np.uint8), "scale": scale, "packing": "Deflate"}
+            data = steps.astype(np.int8).view(np.uint8)
+            yield {**tensor, "type": "I8", "data": data, "scale": scale, "packing": "Deflate"}
         elif most <= MOST_OF_STEPS:
             yield {**tensor, "data": _folded(steps.astype(np.int32)), "scale": scale, "packing": "Steps"}
 
@@ -106,10 +107,9 @@ def _steps(tensor: Tree, path: str) -> Array:
     """The scales of a tensor in steps, which it loses: the halves that come of it have none."""
     if tensor["type"] != "F16":
         raise FormatError("type", path, f"element type {tensor['type']}, expected F16 of what is packed as steps")
-    scale, count = tensor.pop("scale", np.zeros(0, "<f4")), math.prod(sides(tensor, path))
-    if not scale.size or count % scale.size:
-        sentence = f"{scale.size} scales do not fit {tensor['type']} {list(tensor['shape'])}"
-        raise FormatError("shape", f"{path}.scale", sentence)
+    shape, scale = sides(tensor, path), tensor.pop("scale", np.zeros(0, "<f4"))
+    if not scale.size or math.prod(shape) % scale.size:
+        raise FormatError("shape", f"{path}.scale", f"{scale.size} scales do not fit F16 {shape}")
     within = (scale >= LEAST_STEP) & (scale <= LARGEST_STEP) & (np.frexp(scale)[0] == 0.5)
     if not within.all():
         refuse(f"{path}.scale", f"{scale[~within][0]:.6g}, expected a power of two from 2^-24 to 1")

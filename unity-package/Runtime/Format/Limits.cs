@@ -5,7 +5,7 @@ namespace Mua.Format
     internal static class Limits
     {
         public const int Major = 1;
-        public const int Minor = 1;
+        public const int Minor = 2;
         public const int MaxRank = 4;
         public const double Largest = 65504.0;
         public const int UnpackedTimes = 16;

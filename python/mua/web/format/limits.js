@@ -1,7 +1,7 @@
 // Generated from python/mua/limits.py by tools/gen_layout.py; do not edit.
 
 export const MAJOR = 1;
-export const MINOR = 1;
+export const MINOR = 2;
 export const MAX_RANK = 4;
 export const LARGEST = 65504.0;
 export const UNPACKED_TIMES = 16;

@@ -34,6 +34,14 @@ export function sides(/** @type {Tree} */ tensor, /** @type {string} */ path) {
   return shape;
 }
 
+/** The fault of a tensor of another number of scales than it has equal rows. */
+export const unfit = (
+  /** @type {number} */ rows,
+  /** @type {string} */ type,
+  /** @type {number[]} */ shape,
+  /** @type {string} */ path,
+) => fault("shape", `${path}.scale`, `${rows} scales do not fit ${type} ${listed(shape)}`);
+
 /** A tensor whose shape, bytes and scales agree. @returns {Stored} */
 function stored(/** @type {Tree} */ tensor, /** @type {string} */ path) {
   const shape = sides(tensor, path);
@@ -43,7 +51,7 @@ function stored(/** @type {Tree} */ tensor, /** @type {string} */ path) {
     throw fault("shape", `${path}.data`, `${data.length} bytes do not fill ${type} ${listed(shape)}`);
   const rows = tensor.scale?.length ?? 0;
   if ((type === "I8") !== rows > 0 || (rows && product(shape) % rows))
-    throw fault("shape", `${path}.scale`, `${rows} scales do not fit ${type} ${listed(shape)}`);
+    throw unfit(rows, type, shape, path);
   return { shape, type, data, scale: tensor.scale };
 }
 
