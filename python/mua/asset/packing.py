@@ -76,7 +76,8 @@ def _lowest_bits(values: Array) -> Array:
 
 
 def unpack(tree: Tree, size: int) -> None:
-    """Unpack the packed tensors of a file of `size` bytes in place; each then holds its bytes in the file as `_stored`.
+    """Unpack the packed tensors of a file of `size` bytes in place; each then holds its bytes in the file as `_stored`,
+    with those of the scales that it loses.
 
     What a tensor gives is known from its shape, and what all of them give is refused before any is unpacked. Errors:
     FormatError with code `shape`, `value` or `packed`.
@@ -91,7 +92,7 @@ def unpack(tree: Tree, size: int) -> None:
     for path, tensor in held:
         scale = _steps(tensor, path) if tensor["packing"] == "Steps" else None
         planes = _inflate(tensor["data"].tobytes(), _claimed(tensor, path), path)
-        tensor["_stored"] = tensor["data"].nbytes
+        tensor["_stored"] = tensor["data"].nbytes + (0 if scale is None else scale.nbytes)
         tensor["data"] = np.ascontiguousarray(planes.reshape(DTYPES[tensor["type"]].itemsize, -1).T).reshape(-1)
         if scale is not None:
             tensor["data"] = _halves(tensor["data"].view("<u2"), scale)
