@@ -64,10 +64,6 @@ def _folded(steps: Array) -> Array:
     return np.where(steps < 0, -2 * steps - 1, 2 * steps).astype("<u2").view(np.uint8)
 
 
-def _unfolded(numbers: Array) -> Array:
-    return np.where(numbers & 1, -(numbers.astype(np.int32) >> 1) - 1, numbers >> 1)
-
-
 def _lowest_bits(values: Array) -> Array:
     """The largest power of two of which each half is a multiple; 1 for 0."""
     fraction, exponent = np.frexp(values)
@@ -118,9 +114,14 @@ def _steps(tensor: Tree, path: str) -> Array:
 
 
 def _halves(numbers: Array, scale: Array) -> Array:
-    """Bytes of the multiples of their rows' scales."""
-    multiples = _unfolded(numbers).reshape(len(scale), -1) * scale[:, None]
-    return multiples.astype(DTYPES["F16"]).reshape(-1).view(np.uint8)
+    """Bytes of the multiples of their rows' scales, looked up among those of each scale."""
+    rows = numbers.reshape(len(scale), -1)
+    unfolded = np.arange(1, int(numbers.max(initial=0)) + 2) // 2 * np.float32(1)
+    unfolded[1::2] *= -1
+    scales, which = np.unique(scale, return_inverse=True)
+    every = (scales[:, None] * unfolded).astype(DTYPES["F16"])
+    places = rows + (which * len(unfolded))[:, None]
+    return np.take(every.reshape(-1), places).reshape(-1).view(np.uint8)
 
 
 def tensors(tree: Tree, table: str = ROOT, path: str = "") -> Iterator[tuple[str, Tree]]:

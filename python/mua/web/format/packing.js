@@ -21,9 +21,7 @@ const SIGN = 0x8000;
  * @param {Tree} tree @param {number} size @param {number} [end]
  */
 export async function unpack(tree, size, end = size) {
-  const held = [...tensors(tree, ROOT, "")].filter(
-    ([, tensor]) => tensor.packing !== "Plain" || !isThere(tensor, end),
-  );
+  const held = [...tensors(tree, ROOT, "")].filter(([, tensor]) => tensor.packing !== "Plain" || !isThere(tensor, end));
   const most = UNPACKED_TIMES * size + UNPACKED_ROOM;
   let all = 0;
   for (const [path, tensor] of held) {
@@ -131,11 +129,15 @@ function halves(
 
 /** The halves nearest to 0, -1, 1, -2, 2 and so on, times a scale. */
 function multiples(/** @type {number} */ scale) {
-  const sizes = Float32Array.from({ length: NUMBERS }, (_, i) => ((i + 1) >> 1) * scale);
+  const sizes = new Float32Array(NUMBERS);
+  for (let i = 0; i < NUMBERS; i++) sizes[i] = ((i + 1) >> 1) * scale;
   const bits = new Uint32Array(sizes.buffer);
-  const half = (/** @type {number} */ i) =>
-    sizes[i] < LEAST_NORMAL ? sizes[i] / LEAST_STEP : ((bits[i] + 0xfff + ((bits[i] >> 13) & 1)) >> 13) - BIAS_DIFFERENCE;
-  return Uint16Array.from({ length: NUMBERS }, (_, i) => half(i) | (i % 2 ? SIGN : 0));
+  const found = new Uint16Array(NUMBERS);
+  for (let i = 0; i < NUMBERS; i++) {
+    const rounded = ((bits[i] + 0xfff + ((bits[i] >> 13) & 1)) >> 13) - BIAS_DIFFERENCE;
+    found[i] = (sizes[i] < LEAST_NORMAL ? sizes[i] / LEAST_STEP : rounded) | (i % 2 ? SIGN : 0);
+  }
+  return found;
 }
 
 /** Elements of so many bytes from planes of their first bytes, their second ones and so on. */
