@@ -1,9 +1,10 @@
 """Numbers of the format that its readers share; tools/gen_layout.py writes them for C# and JavaScript."""
 
-MAJOR, MINOR = 1, 1  # version
+MAJOR, MINOR = 1, 2  # version
 MAX_RANK = 4  # sides of a tensor
 LARGEST = 65504.0  # largest magnitude of any real: f16's largest
 UNPACKED_TIMES, UNPACKED_ROOM = 16, 1 << 20  # bytes that packed tensors give, for each of the file, and beside
+LEAST_STEP, LARGEST_STEP = 2.0**-24, 1.0  # scales of halves that are packed as steps: no multiple is infinite
 STAGES = 5
 
 MAX_JOINTS, MAX_LAYERS, MAX_CLIPS, MAX_EXPRESSIONS = 4096, 64, 4096, 1024

@@ -83,7 +83,7 @@ def test_a_packed_file_shows_what_it_holds_packed_and_unpacked(tmp_path: Path) -
     path = tmp_path / "packed.muaavatar"
     write(path, synthetic_avatar(), storage="packed")
     held = json.loads(inspect("--json", path).out)
-    assert (held["format"], held["storage"]) == ("1.1", "packed")
+    assert (held["format"], held["storage"]) == ("1.2", "packed")
     assert all(held["bytes_by_part"][part] <= size for part, size in held["unpacked_bytes_by_part"].items())
     assert sum(held["bytes_by_part"].values()) < held["bytes"] < sum(held["unpacked_bytes_by_part"].values())
     shown = inspect(path).out

@@ -51,26 +51,59 @@ def test_what_is_packed_is_given_back(element: Element, shape: tuple[int, ...]) 
 
 @pytest.mark.parametrize(
     ("most", "kind", "scales"),
-    [(127, "I8", [0.25]), (-127, "I8", [0.25]), (128, "I8", [0.25, 0.5]), (129, "F16", None)],
-    ids=["the most", "the least", "one row twice as coarse", "too many"],
+    [
+        (127, ("I8", "Deflate"), [0.25, 0.25]),
+        (-127, ("I8", "Deflate"), [0.25, 0.25]),
+        (254, ("I8", "Deflate"), [0.25, 0.5]),
+        (129, ("F16", "Steps"), [0.25, 0.25]),
+        (-2047, ("F16", "Steps"), [0.25, 0.25]),
+    ],
+    ids=["the most", "the least", "one row twice as coarse", "too many", "far too many"],
 )
-def test_small_multiples_of_a_rows_power_of_two_are_bytes(most: int, kind: str, scales: list[float] | None) -> None:
-    """128 steps are 64 that are twice as large, where all of a row's numbers are multiples of those."""
-    steps = np.zeros((2, 100))
-    steps[0, :2], steps[1, :2] = (3, -1), (most, 6)
+def test_multiples_of_a_rows_power_of_two_are_bytes_or_steps(
+    most: int, kind: tuple[str, str], scales: list[float]
+) -> None:
+    """Up to 127 of them are bytes; 254 are 127 that are twice as large, where all of the row are multiples of those."""
+    rng = np.random.default_rng(0)
+    steps = rng.integers(-60, 60, (2, 4000))
+    steps[:, 0] = 3, most
+    if scales[0] != scales[1]:
+        steps[1] &= -2
     plain = pack(steps / 4, "f16")
     tensor = packed(plain)
-    assert tensor["type"] == kind
-    assert (None if scales is None else tensor["scale"].tolist()) == scales
+    assert (tensor["type"], tensor["packing"]) == kind
+    np.testing.assert_array_equal(np.broadcast_to(tensor["scale"], 2), scales)
     tree = {"bounds": tensor}
     unpack(tree, 1 << 20)
-    np.testing.assert_array_equal(reals(tensor, "bounds", (2, 100)), reals(plain, "bounds", (2, 100)))
+    np.testing.assert_array_equal(reals(tensor, "bounds", (2, 4000)), reals(plain, "bounds", (2, 4000)))
 
 
-def test_bytes_whose_scales_would_be_longer_stay_halves() -> None:
+def test_the_stream_of_steps_holds_their_low_bytes_then_their_high_ones() -> None:
+    steps = np.random.default_rng(0).choice([0, -1, 1, -2, 300, -301], 4000)
+    planes = np.frombuffer(zlib.decompress(packed(pack(steps / 8, "f16"))["data"].tobytes(), wbits=-15), np.uint8)
+    numbers = np.select([steps == step for step in (0, -1, 1, -2, 300, -301)], [0, 1, 2, 3, 600, 601])
+    np.testing.assert_array_equal(planes, np.concatenate([numbers % 256, numbers // 256]))
+
+
+def test_each_multiple_of_each_scale_is_the_nearest_half() -> None:
+    """Also where it is no half itself: a file may hold it, though no writer of ours does."""
+    numbers = np.arange(1 << 16)
+    multiples = np.where(numbers % 2, -(numbers + 1) // 2, numbers // 2)
+    scales = 2.0 ** -np.arange(25)
+    planes = np.tile(numbers.astype("<u2"), 25).view(np.uint8).reshape(-1, 2).T
+    tensor = {"shape": np.array((25, 1 << 16), "<u4"), "type": "F16", "scale": scales.astype("<f4"), "packing": "Steps"}
+    tree = {"bounds": {**tensor, "data": stream(planes.tobytes())}}
+    unpack(tree, 1 << 20)
+    expected = (multiples * scales[:, None]).astype(np.float16)
+    np.testing.assert_array_equal(reals(tree["bounds"], "bounds", (25, 1 << 16)), expected)
+
+
+def test_rows_whose_scales_take_more_than_they_save_share_one() -> None:
     """Rows of 32 numbers, each with a step of its own."""
     steps = np.random.default_rng(0).integers(-100, 100, (64, 32)) | 1
-    assert packed(pack(steps * 2.0 ** -(np.arange(64) % 16)[:, None], "f16"))["type"] == "F16"
+    fine, coarse = (packed(pack(steps * 2.0 ** -(np.arange(64) % most)[:, None], "f16")) for most in (1, 4))
+    assert fine["scale"].size == 1
+    assert coarse["scale"].size == 64
 
 
 def test_a_tensor_that_does_not_shrink_stays_as_it_is() -> None:
@@ -79,7 +112,10 @@ def test_a_tensor_that_does_not_shrink_stays_as_it_is() -> None:
 
 
 def test_an_unpacked_file_holds_what_was_packed(network: bytes) -> None:
-    before = {path: tensor["data"].nbytes for path, tensor in tensors(parse(network)) if tensor["packing"] != "Plain"}
+    held = {path: tensor for path, tensor in tensors(parse(network)) if tensor["packing"] != "Plain"}
+    lost = {path: tensor["scale"].nbytes for path, tensor in held.items() if tensor["packing"] == "Steps"}
+    before = {path: tensor["data"].nbytes + lost.get(path, 0) for path, tensor in held.items()}
+    assert lost
     after = dict(tensors(parse_checked(network)))
     assert len(before) > 5
     assert {path: after[path]["_stored"] for path in before} == before

@@ -72,6 +72,31 @@ def test_an_mlp_with_units_of_other_sizes_is_rounded_as_well() -> None:
     assert errors[1] < 1.2 * errors[0]
 
 
+def test_hidden_units_stand_by_how_many_weights_read_them() -> None:
+    avatar = synthetic_avatar()
+    *others, last = avatar.appearance.mlp
+    weight = last.weight.copy()
+    weight[:, ::3] = 0
+    mlp = (*others, Layer(weight, last.bias))
+    found = rounded(replace(avatar, appearance=replace(avatar.appearance, mlp=mlp)), 1e-3).appearance.mlp
+    read = np.count_nonzero(found[-1].weight, axis=0)
+    assert (np.diff(read) <= 0).all()
+    assert read[0] > read[-1] == 0
+    np.testing.assert_allclose(outputs(found), outputs(mlp), atol=2e-3 * np.abs(outputs(mlp)).max())
+
+
+def test_a_mesh_is_rounded_more_finely_where_its_vertices_carry_more_texels() -> None:
+    avatar = synthetic_avatar()
+    texels = avatar.rig.texels
+    count = len(texels.texels)
+    few = replace(texels, texels=texels.texels[: count // 16], triangles=texels.triangles[: count // 16])
+    errors = []
+    for held in (few, texels):
+        found = rounded(replace(avatar, rig=replace(avatar.rig, texels=held)))
+        errors.append(np.abs(found.coarse.basis - avatar.coarse.basis).mean())
+    assert errors[0] > 2 * errors[1]
+
+
 def test_texels_smaller_than_a_pixel_are_rounded_more_coarsely() -> None:
     avatar = synthetic_avatar()
     height = float(np.ptp(avatar.coarse.mean, axis=0).max())

@@ -158,7 +158,7 @@ def test_which_texels_are_one_sided_comes_back(count: int, storage: Storage) -> 
 def test_every_file_says_the_one_version(storage: Storage) -> None:
     for avatar in (synthetic_avatar(), sparse_avatar(0)):
         tree = parse(encode(avatar, storage=storage))
-        assert (tree["version_major"], tree["version_minor"]) == (1, 1)
+        assert (tree["version_major"], tree["version_minor"]) == (1, 2)
 
 
 @pytest.mark.parametrize(("storage", "kind"), [("f32", "F32"), ("f16", "F16"), ("i8", "F16"), ("packed", "F16")])

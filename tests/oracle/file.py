@@ -20,6 +20,7 @@ TABLES = {
     table: re.findall(r"(\w+): (\[?\w+\]?)", body) for table, body in re.findall(r"table (\w+) \{(.*?)\}", TEXT, re.S)
 }
 NUMBERS = {"bool": "?", "ubyte": "u1", "ushort": "<u2", "uint": "<u4", "float": "<f4", "double": "<f8"}
+STEPS = 2  # of Packing
 ELEMENTS = ["<f4", "<f2", "i1", "<i4"]  # in the order of ElementType
 
 
@@ -59,6 +60,11 @@ def expand(tensor: Record) -> Array:
     if tensor.packing:
         planes = zlib.decompress(data.tobytes(), wbits=-15) if count else b""
         data = np.frombuffer(planes, np.uint8).reshape(kind.itemsize, count).T.ravel()
+    if tensor.packing == STEPS:  # their data are numbers, not yet the halves
+        numbers = data.view("<u2").astype(np.int64)
+        multiples = np.where(numbers % 2, -(numbers + 1) // 2, numbers // 2).astype(np.float64)
+        scales = np.repeat(tensor.scale.astype(np.float64), count // len(tensor.scale))
+        data = (multiples * scales).astype("<f2").view(np.uint8)
     values = data.view(kind).astype(np.int64 if kind == "<i4" else np.float64)
     if kind == "i1":
         values = values * np.repeat(tensor.scale.astype(np.float64), count // max(len(tensor.scale), 1))

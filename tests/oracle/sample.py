@@ -32,6 +32,7 @@ def numbers(avatar: Record) -> Iterator[tuple[str, str, Any]]:
     skeleton, geometry, clip = avatar.skeleton, avatar.geometry, avatar.clips[0]
     yield "1.1", "clips[0].rotations", clip.rotations
     yield "1.5", "geometry.ll_basis", geometry.ll_basis
+    yield "1.5", "coarse.basis", avatar.coarse.basis
     yield "2.1", "l0", motion.bind_pose(skeleton).rotations
     yield "2.2", "l of stored frame 1", motion.stored_pose(skeleton, clip, 1).rotations
     yield "2.2", "t of stored frame 1", motion.stored_pose(skeleton, clip, 1).translations

@@ -18,7 +18,7 @@ ROOT = "Avatar"
 
 ENUMS = {
     "ElementType": ("F32", "F16", "I8", "I32"),
-    "Packing": ("Plain", "Deflate"),
+    "Packing": ("Plain", "Deflate", "Steps"),
     "Axes": ("MetresYUpRightHanded",),
     "RotationEncoding": ("SixD",),
     "WindowOrder": ("NewestFirst",),

@@ -1,65 +1,67 @@
 """Tensors packed for the network, their bytes in planes and deflated; and unpacked, never beyond what a file may claim.
 
 In planes, the bytes of equal weight stand together: all first bytes of the elements, then all second ones. Halves whose
-rows are small multiples of a power of two, as `mua.asset.rounding` makes them, are the same numbers as i8.
+rows are multiples of a power of two, as `mua.asset.rounding` makes them, are stored as those multiples: as i8 where
+they are small, else as steps, integers of 16 bits whose second bytes are mostly 0.
 """
 
 import math
 import zlib
 from collections.abc import Iterator
 
+import deflate
 import numpy as np
 
 from mua.arrays import Array
-from mua.asset.flatbuffer import FormatError, Tree
+from mua.asset.flatbuffer import FormatError, Tree, refuse
 from mua.asset.layout import ROOT, TABLES
 from mua.asset.tensors import DTYPES, sides
-from mua.limits import UNPACKED_ROOM, UNPACKED_TIMES
+from mua.limits import LARGEST_STEP, LEAST_STEP, UNPACKED_ROOM, UNPACKED_TIMES
 
 RAW = -15  # zlib's word for a deflate stream of the largest window without a header
 GAIN = 0.95  # of its bytes, above which a tensor is not worth unpacking
-STRATEGIES = (zlib.Z_DEFAULT_STRATEGY, zlib.Z_FILTERED, zlib.Z_HUFFMAN_ONLY)  # none is the best of all
 HALF_BITS = 11  # of a half's fraction, with the one that is not stored
-MOST_STEPS = 127
-LEAST_ROW = 64  # bytes of a row, beside which the four of its scale count little
-MEMORY = 9  # the most that zlib may take, for the longest blocks
+MOST_OF_BYTE, MOST_OF_STEPS = 127, 32767
+BEST, QUICK = 12, 4  # levels of libdeflate: of what is written, and of what is compared
 
 
 def packed(tensor: Tree) -> Tree:
     """The tensor as a file for the network holds it, the same numbers; unchanged where that saves nothing."""
-    tensor = _in_bytes(tensor)
+    form = min(_forms(tensor), key=lambda form: len(_deflated(form, QUICK)) + form.get("scale", np.zeros(0)).nbytes)
+    stream = _deflated(form, BEST)
+    if len(stream) > GAIN * tensor["data"].nbytes:
+        return tensor
+    return {**form, "data": np.frombuffer(stream, np.uint8)}
+
+
+def _deflated(tensor: Tree, level: int) -> bytes:
     planes = tensor["data"].reshape(-1, DTYPES[tensor["type"]].itemsize).T
-    last = len(planes) - 1
-    stream = b"".join(_smallest(plane.tobytes(), ends=number == last) for number, plane in enumerate(planes))
-    if len(stream) > GAIN * planes.size:
-        return tensor
-    return {**tensor, "data": np.frombuffer(stream, np.uint8), "packing": "Deflate"}
+    return bytes(deflate.deflate_compress(planes.tobytes(), level))
 
 
-def _smallest(plane: bytes, *, ends: bool) -> bytes:
-    """A part of a stream, the last one or not, by the strategy that makes it smallest."""
-    parts = []
-    for strategy in STRATEGIES:
-        deflate = zlib.compressobj(9, zlib.DEFLATED, RAW, MEMORY, strategy)
-        parts.append(deflate.compress(plane) + deflate.flush(zlib.Z_FINISH if ends else zlib.Z_SYNC_FLUSH))
-    return min(parts, key=len)
-
-
-def _in_bytes(tensor: Tree) -> Tree:
-    """The same numbers as i8, by the fewest rows, where halves are small multiples of a row's power of two."""
+def _forms(tensor: Tree) -> Iterator[Tree]:
+    """The same numbers as elements of each kind that a reader unpacks, before they are deflated."""
+    yield {**tensor, "packing": "Deflate"}
     if tensor["type"] != "F16" or not tensor["data"].size:
-        return tensor
+        return
     values = tensor["data"].view(DTYPES["F16"]).astype(np.float32)
     if not np.isfinite(values).all():
-        return tensor
+        return
     units = _lowest_bits(values)
     for rows in sorted({math.prod(tensor["shape"][:axis].tolist()) for axis in range(len(tensor["shape"]))}):
-        scale = units.reshape(rows, -1).min(axis=1)
-        whole = values.reshape(rows, -1) / scale[:, None]
-        if rows * LEAST_ROW <= values.size and np.abs(whole).max() <= MOST_STEPS:
-            data = whole.astype(np.int8).reshape(-1).view(np.uint8)
-            return {**tensor, "type": "I8", "data": data, "scale": scale}
-    return tensor
+        scale = units.reshape(rows, -1).min(axis=1, initial=LARGEST_STEP)
+        steps = (values.reshape(rows, -1) / scale[:, None]).reshape(-1)
+        most = np.abs(steps).max()
+        if most <= MOST_OF_BYTE:
+            data = steps.astype(np.int8).view(np.uint8)
+            yield {**tensor, "type": "I8", "data": data, "scale": scale, "packing": "Deflate"}
+        elif most <= MOST_OF_STEPS:
+            yield {**tensor, "data": _folded(steps.astype(np.int32)), "scale": scale, "packing": "Steps"}
+
+
+def _folded(steps: Array) -> Array:
+    """Bytes of 0, -1, 1, -2, 2 and so on as 0, 1, 2, 3, 4."""
+    return np.where(steps < 0, -2 * steps - 1, 2 * steps).astype("<u2").view(np.uint8)
 
 
 def _lowest_bits(values: Array) -> Array:
@@ -70,12 +72,13 @@ def _lowest_bits(values: Array) -> Array:
 
 
 def unpack(tree: Tree, size: int) -> None:
-    """Unpack the packed tensors of a file of `size` bytes in place; each then holds its bytes in the file as `_stored`.
+    """Unpack the packed tensors of a file of `size` bytes in place; each then holds its bytes in the file as `_stored`,
+    with those of the scales that it loses.
 
     What a tensor gives is known from its shape, and what all of them give is refused before any is unpacked. Errors:
     FormatError with code `shape`, `value` or `packed`.
     """
-    held = [(path, tensor) for path, tensor in tensors(tree) if tensor["packing"] == "Deflate"]
+    held = [(path, tensor) for path, tensor in tensors(tree) if tensor["packing"] != "Plain"]
     claimed, most = 0, UNPACKED_TIMES * size + UNPACKED_ROOM
     for path, tensor in held:
         claimed += _claimed(tensor, path)
@@ -83,15 +86,42 @@ def unpack(tree: Tree, size: int) -> None:
             sentence = f"the file's packed tensors claim more than {most} bytes, too many for {size} bytes"
             raise FormatError("value", f"{path}.data", sentence)
     for path, tensor in held:
+        scale = _steps(tensor, path) if tensor["packing"] == "Steps" else None
         planes = _inflate(tensor["data"].tobytes(), _claimed(tensor, path), path)
-        tensor["_stored"] = tensor["data"].nbytes
+        tensor["_stored"] = tensor["data"].nbytes + (0 if scale is None else scale.nbytes)
         tensor["data"] = np.ascontiguousarray(planes.reshape(DTYPES[tensor["type"]].itemsize, -1).T).reshape(-1)
+        if scale is not None:
+            tensor["data"] = _halves(tensor["data"].view("<u2"), scale)
         tensor["packing"] = "Plain"
 
 
 def _claimed(tensor: Tree, path: str) -> int:
     """Bytes of the elements, by the shape."""
     return math.prod(sides(tensor, path)) * DTYPES[tensor["type"]].itemsize
+
+
+def _steps(tensor: Tree, path: str) -> Array:
+    """The scales of a tensor in steps, which it loses: the halves that come of it have none."""
+    if tensor["type"] != "F16":
+        raise FormatError("type", path, f"element type {tensor['type']}, expected F16 of what is packed as steps")
+    shape, scale = sides(tensor, path), tensor.pop("scale", np.zeros(0, "<f4"))
+    if not scale.size or math.prod(shape) % scale.size:
+        raise FormatError("shape", f"{path}.scale", f"{scale.size} scales do not fit F16 {shape}")
+    within = (scale >= LEAST_STEP) & (scale <= LARGEST_STEP) & (np.frexp(scale)[0] == 0.5)
+    if not within.all():
+        refuse(f"{path}.scale", f"{scale[~within][0]:.6g}, expected a power of two from 2^-24 to 1")
+    return np.asarray(scale)
+
+
+def _halves(numbers: Array, scale: Array) -> Array:
+    """Bytes of the multiples of their rows' scales, looked up among those of each scale."""
+    rows = numbers.reshape(len(scale), -1)
+    unfolded = np.arange(1, int(numbers.max(initial=0)) + 2) // 2 * np.float32(1)
+    unfolded[1::2] *= -1
+    scales, which = np.unique(scale, return_inverse=True)
+    every = (scales[:, None] * unfolded).astype(DTYPES["F16"])
+    places = rows + (which * len(unfolded))[:, None]
+    return np.take(every.reshape(-1), places).reshape(-1).view(np.uint8)
 
 
 def tensors(tree: Tree, table: str = ROOT, path: str = "") -> Iterator[tuple[str, Tree]]:

@@ -20,7 +20,7 @@ from mua.rig.expressions import Expressions
 
 # Steps of the static offset, measured in docs/research/storage.md; that of an offset is of the figure's height.
 STEPS = {"offset": 2.0**-16, "rotation": 2.0**-8, "scale": 2.0**-7, "opacity": 2.0**-6, "SH": 2.0**-8}
-STATIC, LL, DETAILS, MEANS, LAST, HIDDEN, MESH = 0.45, 0.45, 0.36, 0.45, 0.45, 0.45, 0.45  # times the step that follows
+STATIC, LL, DETAILS, WEIGHTS = 0.8, 0.8, 0.4, 0.4  # times the step that follows
 FIGURE = 400  # pixels along a figure: errors of texels that are smaller than one average out
 POSES = 512  # random ones, by which networks are measured
 FAINT = 1 / 16  # of a layer's mean output, below which units count as if they were that large
@@ -37,12 +37,14 @@ def rounded(avatar: Avatar, rounding: float = 1.0) -> Avatar:
     height = float(np.ptp(avatar.coarse.mean, axis=0).max(initial=0)) or 1.0
     steps, poses = rounding * channel_steps(height), _poses(avatar.components)
     fine = max(1.0, height / (FIGURE * (avatar.rig.texels.length or np.inf))) ** 0.5
+    carried = max(1.0, len(avatar.rig.texels.texels) / len(avatar.coarse.mean))  # texels by each vertex
+    mesh = steps[0] / carried**0.5
     return replace(
         avatar,
-        coarse=_coarse(avatar.coarse, MESH * steps[0], poses),
+        coarse=_coarse(avatar.coarse, mesh, poses),
         geometry=_branch(avatar.geometry, fine * steps[GEOMETRY], fine, poses),
         appearance=_branch(avatar.appearance, fine * steps[APPEARANCE], fine, poses),
-        rig=replace(avatar.rig, expressions=_expressions(avatar.rig.expressions, MESH * steps[0])),
+        rig=replace(avatar.rig, expressions=_expressions(avatar.rig.expressions, mesh)),
     )
 
 
@@ -70,7 +72,7 @@ def rows_in_steps(
 ) -> Array:
     """The same with larger steps in the few rows that have more of them than a byte holds, if it is few.
 
-    A tensor whose rows all fit in bytes takes a fifth less: `mua.asset.packing` stores it as i8.
+    A tensor whose rows all fit in bytes is stored as i8 by `mua.asset.packing`: half the memory for whoever plays it.
     """
     powers = _powers(steps)
     most = np.abs(values).max(axis=-1, keepdims=True)
@@ -126,7 +128,7 @@ def _branch(
     return replace(
         branch,
         mlp=mlp,
-        ll_mean=in_steps(branch.ll_mean, MEANS * steps[:, None, None]),
+        ll_mean=in_steps(branch.ll_mean, steps[:, None, None]),
         ll_basis=_planes_in_steps(branch.ll_basis, LL * steps[:, None] / ll),
         details=tuple(_detail(band, steps[:, None], own) for band, own in zip(branch.details, levels, strict=True)),
         static=in_steps(branch.static, STATIC * fine * steps[:, None]),
@@ -141,7 +143,7 @@ def _detail(
     """An error in one factor counts as much as the other is large."""
     own = (DETAILS * steps / sizes)[..., None]
     return DetailBand(
-        mean=in_steps(band.mean, MEANS * steps[..., None]),
+        mean=in_steps(band.mean, steps[..., None]),
         h=in_steps(band.h, own / _nonzero(_norm(band.w))),
         w=in_steps(band.w, own / _nonzero(_norm(band.h))),
     )
@@ -164,11 +166,21 @@ def _mlp(
     inputs, outputs = list(zip(*_outputs(mlp, poses), strict=True))
     layers = []
     for number, layer in reversed(list(enumerate(mlp))):
-        steps = (LAST if layer is mlp[-1] else HIDDEN) / _nonzero(reach)
+        steps = WEIGHTS / _nonzero(reach)
         layers.append(Layer(rows_in_steps(layer.weight, steps[:, None]), layer.bias))
         fires = np.mean(inputs[number] > 0, axis=0)
         reach = np.sqrt(np.maximum(fires, FAINT) * ((reach[:, None] * layer.weight) ** 2).sum(axis=0))
-    return tuple(reversed(layers)), _size(outputs[-1])
+    return _sorted(tuple(reversed(layers))), _size(outputs[-1])
+
+
+def _sorted(mlp: Mlp) -> Mlp:
+    """An equal function, its units by how many weights read them: zeros of a row that lie together deflate best."""
+    for number in range(len(mlp) - 1):
+        one, next_ = mlp[number : number + 2]
+        order = np.argsort(-np.count_nonzero(next_.weight, axis=0), kind="stable")
+        pair = Layer(one.weight[order], one.bias[order]), Layer(next_.weight[:, order], next_.bias)
+        mlp = (*mlp[:number], *pair, *mlp[number + 2 :])
+    return mlp
 
 
 def _balanced(

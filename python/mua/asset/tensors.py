@@ -104,12 +104,13 @@ def reals(tensor: Tree, path: str, shape: tuple[int | None, ...]) -> Array:
         scale = tensor["scale"]
         with np.errstate(invalid="ignore", over="ignore"):  # what is not finite then is reported below
             values = (values.reshape(scale.size, -1).astype(np.float32) * scale[:, None]).reshape(values.shape)
+    values = values.astype(np.float32, copy=False)
     if not np.isfinite(values).all() or not np.isfinite(tensor.get("scale", np.zeros(1))).all():
         raise FormatError("finite", path, "a value is not finite")
     if max(values.max(initial=0), -values.min(initial=0)) > LARGEST:
         worst = values.ravel()[np.abs(values).argmax()]
         raise FormatError("value", path, f"{worst:.6g}, expected {-LARGEST:.6g} to {LARGEST:.6g}")
-    return values.astype(np.float32, copy=False)
+    return values
 
 
 def _check_shape(values: Array, path: str, shape: tuple[int | None, ...]) -> None:

@@ -39,21 +39,39 @@ namespace Mua.Format
         /// <summary>The largest magnitude of finite values; 0 of none.</summary>
         public static float Magnitude(Tensor tensor)
         {
-            float largest = 0;
             if (tensor.Type == ElementType.F16)
             {
-                int most = 0;
-                foreach (ushort bits in MemoryMarshal.Cast<byte, ushort>(tensor.Bytes))
-                {
-                    most = Math.Max(most, bits & 0x7FFF);
-                }
-                return Half.ToSingle((ushort)most);
+                return Half.ToSingle(Largest(tensor.Bytes));
             }
+            float largest = 0;
             for (int i = 0; i < tensor.Count; i++)
             {
                 largest = Math.Max(largest, Math.Abs(tensor.Read(i)));
             }
             return largest;
+        }
+
+        /// <summary>The largest of halves without their signs, four at a step.</summary>
+        private static ushort Largest(ReadOnlySpan<byte> halves)
+        {
+            ulong most = 0;
+            foreach (ulong word in MemoryMarshal.Cast<byte, ulong>(halves))
+            {
+                ulong magnitudes = word & Magnitudes16;
+                ulong isMore = ((magnitudes | ~Magnitudes16) - most & ~Magnitudes16) >> 15; // 1 where it is no less
+                ulong taken = isMore * 0xFFFF;
+                most = magnitudes & taken | most & ~taken;
+            }
+            int largest = 0;
+            for (int part = 0; part < 4; part++)
+            {
+                largest = Math.Max(largest, (int)(most >> 16 * part & 0x7FFF));
+            }
+            for (int i = halves.Length / 8 * 8; i < halves.Length; i += 2)
+            {
+                largest = Math.Max(largest, (halves[i] | halves[i + 1] << 8) & 0x7FFF);
+            }
+            return (ushort)largest;
         }
 
         private static bool Within(ReadOnlySpan<byte> bytes, ulong magnitudes, ulong beyond)

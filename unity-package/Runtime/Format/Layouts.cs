@@ -7,7 +7,7 @@ namespace Mua.Format
         public const string Identifier = "MUAV";
 
         public static readonly string[] ElementType = { "F32", "F16", "I8", "I32" };
-        public static readonly string[] Packing = { "Plain", "Deflate" };
+        public static readonly string[] Packing = { "Plain", "Deflate", "Steps" };
         public static readonly string[] Axes = { "MetresYUpRightHanded" };
         public static readonly string[] RotationEncoding = { "SixD" };
         public static readonly string[] WindowOrder = { "NewestFirst" };

@@ -5,11 +5,13 @@ namespace Mua.Format
     internal static class Limits
     {
         public const int Major = 1;
-        public const int Minor = 1;
+        public const int Minor = 2;
         public const int MaxRank = 4;
         public const double Largest = 65504.0;
         public const int UnpackedTimes = 16;
         public const int UnpackedRoom = 1048576;
+        public const double LeastStep = 5.960464477539063e-08;
+        public const double LargestStep = 1.0;
         public const int Stages = 5;
         public const int MaxJoints = 4096;
         public const int MaxLayers = 64;

@@ -6,55 +6,97 @@ namespace Mua.Format
     /// How large the numbers may become that a file decodes to: refused where single precision would not hold their squares.
     /// Mirrors python/mua/asset/magnitude.py.
     /// </summary>
-    internal static class Magnitude
+    internal sealed class Magnitude
     {
+        private readonly bool isExact; // or at least as large, which takes less time
+
+        private Magnitude(bool isExact)
+        {
+            this.isExact = isExact;
+        }
+
         public static void Require(AvatarFile avatar)
+        {
+            string path = new Magnitude(isExact: false).Excess(avatar);
+            path = path == null ? null : new Magnitude(isExact: true).Excess(avatar);
+            if (path != null)
+            {
+                throw Refusal.Of(path, "the numbers that follow from it may exceed 4.6e+18");
+            }
+        }
+
+        /// <summary>The first field from which too large numbers follow; null where none do.</summary>
+        private string Excess(AvatarFile avatar)
         {
             double inputs = Largest(avatar.Encoding.Ranges) + Largest(avatar.Encoding.Margins);
             Coarse coarse = avatar.Coarse;
-            double weight = Network(coarse.Mlp, inputs, "coarse.mlp");
-            Require("coarse", Finite.Magnitude(coarse.Mean) + coarse.Basis.Shape[0] * weight * Finite.Magnitude(coarse.Basis));
-            RequireTexture(avatar.Geometry, avatar.Wavelet, inputs, "geometry");
-            RequireTexture(avatar.Appearance, avatar.Wavelet, inputs, "appearance");
+            double weight = Network(coarse.Mlp, inputs);
+            double mesh = Largest(coarse.Mean) + coarse.Basis.Shape[0] * weight * Largest(coarse.Basis);
+            return Exceeds(weight) ? "coarse.mlp" : Exceeds(mesh) ? "coarse"
+                : Excess(avatar.Geometry, avatar.Wavelet, inputs, "geometry")
+                ?? Excess(avatar.Appearance, avatar.Wavelet, inputs, "appearance");
         }
 
-        private static double Network(Layer[] mlp, double inputs, string path)
+        private string Excess(Branch branch, Wavelet wavelet, double inputs, string path)
+        {
+            double coefficient = Network(branch.Mlp, inputs);
+            return Exceeds(coefficient) ? path + ".mlp" : Exceeds(Texture(branch, wavelet, coefficient)) ? path : null;
+        }
+
+        /// <summary>What comes out of the layers; infinite where it is too large after any of them.</summary>
+        private double Network(Layer[] mlp, double inputs)
         {
             double found = inputs;
             foreach (Layer layer in mlp)
             {
-                double rows = 0;
-                for (int row = 0; row < layer.Outputs; row++)
-                {
-                    double sum = 0;
-                    for (int i = row * layer.Inputs; i < (row + 1) * layer.Inputs; i++)
-                    {
-                        sum += Math.Abs(layer.Weight.Read(i));
-                    }
-                    rows = Math.Max(rows, sum);
-                }
-                found = rows * found + Finite.Magnitude(layer.Bias);
-                Require(path, found);
+                found = LargestRow(layer) * found + Largest(layer.Bias);
+                found = Exceeds(found) ? double.PositiveInfinity : found;
             }
             return found;
         }
 
-        private static void RequireTexture(Branch branch, Wavelet wavelet, double inputs, string path)
+        private double Texture(Branch branch, Wavelet wavelet, double coefficient)
         {
             double low = Sum(wavelet.RecLo), high = Sum(wavelet.RecHi);
-            double coefficient = Network(branch.Mlp, inputs, path + ".mlp");
-            double found = Finite.Magnitude(branch.LlMean) + branch.Rank * coefficient * Finite.Magnitude(branch.LlBasis);
+            double found = Largest(branch.LlMean) + branch.Rank * coefficient * Largest(branch.LlBasis);
             for (int level = 0; level < wavelet.Levels; level++)
             {
                 found *= low * low;
                 if (level < branch.Details.Length)
                 {
                     DetailBand band = branch.Details[level];
-                    double product = Finite.Magnitude(band.H) * Finite.Magnitude(band.W);
-                    found += (2 * low + high) * high * (Finite.Magnitude(band.Mean) + band.Rank * coefficient * product);
+                    double product = Largest(band.H) * Largest(band.W);
+                    found += (2 * low + high) * high * (Largest(band.Mean) + band.Rank * coefficient * product);
                 }
             }
-            Require(path, found);
+            return found;
+        }
+
+        private double Largest(Tensor tensor)
+        {
+            bool isQuick = !isExact && tensor.Type == ElementType.I8;
+            return isQuick ? 128.0 * Largest(tensor.Scale) : Finite.Magnitude(tensor);
+        }
+
+        /// <summary>The largest sum of magnitudes in a row of weights.</summary>
+        private double LargestRow(Layer layer)
+        {
+            if (!isExact)
+            {
+                return layer.Inputs * Largest(layer.Weight);
+            }
+            float[] weights = layer.Weight.ToFloats();
+            double largest = 0;
+            for (int row = 0; row < layer.Outputs; row++)
+            {
+                double sum = 0;
+                for (int i = row * layer.Inputs; i < (row + 1) * layer.Inputs; i++)
+                {
+                    sum += Math.Abs(weights[i]);
+                }
+                largest = Math.Max(largest, sum);
+            }
+            return largest;
         }
 
         private static double Sum(double[] taps)
@@ -77,12 +119,9 @@ namespace Mua.Format
             return largest;
         }
 
-        private static void Require(string path, double reached)
+        private static bool Exceeds(double reached)
         {
-            if (!(reached <= Limits.Magnitude))
-            {
-                throw Refusal.Of(path, "the numbers that follow from it may exceed 4.6e+18");
-            }
+            return !(reached <= Limits.Magnitude);
         }
     }
 }

@@ -217,11 +217,10 @@ namespace Mua.Format
         /// <summary>Refuses quaternions that storage alone cannot have brought off unit length.</summary>
         public static void RequireUnit(Tensor quaternions, string path)
         {
-            for (int i = 0; i < quaternions.Count; i += 4)
+            float[] q = quaternions.ToFloats();
+            for (int i = 0; i < q.Length; i += 4)
             {
-                double length = new QuaternionD(
-                    quaternions.Read(i), quaternions.Read(i + 1), quaternions.Read(i + 2), quaternions.Read(i + 3))
-                    .Length;
+                double length = new QuaternionD(q[i], q[i + 1], q[i + 2], q[i + 3]).Length;
                 if (Math.Abs(length - 1) > Limits.UnitBound)
                 {
                     throw Refusal.Of(path, "a quaternion of length {0:g4}, expected 1", length);
@@ -277,9 +276,10 @@ namespace Mua.Format
 
         private static void RequireBarycentrics(Tensor barycentrics)
         {
-            for (int i = 0; i < barycentrics.Count; i += 2)
+            float[] values = barycentrics.ToFloats();
+            for (int i = 0; i < values.Length; i += 2)
             {
-                float first = barycentrics.Read(i), second = barycentrics.Read(i + 1), third = 1 - (first + second);
+                float first = values[i], second = values[i + 1], third = 1 - (first + second);
                 float least = Math.Min(Math.Min(first, second), third);
                 if (least < -Limits.BarycentricSlack)
                 {

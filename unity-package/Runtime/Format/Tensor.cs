@@ -17,6 +17,7 @@ namespace Mua.Format
     {
         Plain,
         Deflate,
+        Steps,
     }
 
     /// <summary>A view of one tensor's bytes, row-major and in its stored type.</summary>
@@ -76,8 +77,21 @@ namespace Mua.Format
         /// <summary>All elements as floats.</summary>
         public float[] ToFloats()
         {
+            if (Type == ElementType.F32)
+            {
+                return MemoryMarshal.Cast<byte, float>(Bytes).ToArray();
+            }
             var values = new float[Count];
-            for (int i = 0; i < Count; i++)
+            if (Type == ElementType.F16)
+            {
+                ReadOnlySpan<ushort> halves = MemoryMarshal.Cast<byte, ushort>(Bytes);
+                for (int i = 0; i < values.Length; i++)
+                {
+                    values[i] = Half.ToSingle(halves[i]);
+                }
+                return values;
+            }
+            for (int i = 0; i < values.Length; i++)
             {
                 values[i] = Read(i);
             }

@@ -80,7 +80,7 @@ namespace Mua.Format
             int rows = scale == null ? 0 : scale.Count;
             if ((type == ElementType.I8) != (rows > 0) || (rows > 0 && count % rows != 0))
             {
-                throw Fault("shape", path + ".scale", rows + " scales do not fit " + type + Describe(shape));
+                throw Unfit(rows, type, shape, path);
             }
             return new Tensor
             {
@@ -88,6 +88,12 @@ namespace Mua.Format
                 ByteLength = data.Count,
                 Scale = rows == 0 ? null : View<float>(scale.Offset, 4 * rows).ToArray(),
             };
+        }
+
+        /// <summary>The fault of a tensor of another number of scales than it has equal rows.</summary>
+        public static AvatarFormatException Unfit(int rows, ElementType type, int[] shape, string path)
+        {
+            return Fault("shape", path + ".scale", rows + " scales do not fit " + type + Describe(shape));
         }
 
         /// <summary>The sides of a shape that a file could hold: an empty tensor's sides are bounded, too.</summary>
@@ -113,7 +119,7 @@ namespace Mua.Format
             return shape;
         }
 
-        private ReadOnlySpan<T> View<T>(int offset, int length) where T : struct
+        public ReadOnlySpan<T> View<T>(int offset, int length) where T : struct
         {
             return MemoryMarshal.Cast<byte, T>(new ReadOnlySpan<byte>(content, offset, length));
         }

@@ -13,6 +13,7 @@ namespace Mua.Format
     {
         private readonly byte[] content;
         private readonly Tensors tensors;
+        private readonly Steps steps = new Steps();
         private byte[] planes = new byte[0];
         private long claimed;
 
@@ -44,7 +45,7 @@ namespace Mua.Format
         {
             if (table.Is(Layouts.Tensor))
             {
-                if ((Packing)table.Number("packing") == Packing.Deflate)
+                if ((Packing)table.Number("packing") != Packing.Plain)
                 {
                     visit(table, path);
                 }
@@ -92,15 +93,48 @@ namespace Mua.Format
 
         private void Unpack(Table tensor, string path)
         {
+            bool inSteps = (Packing)tensor.Number("packing") == Packing.Steps;
+            ReadOnlySpan<float> scales = inSteps ? Scales(tensor, path) : default(ReadOnlySpan<float>);
             int width = Tensors.Width((ElementType)tensor.Number("type"));
             var data = new byte[Claimed(tensor, path)];
             byte[] inflated = width == 1 ? data : Planes(data.Length);
             Inflate(tensor.Block("data"), inflated, data.Length, path);
-            if (width > 1)
+            if (inSteps)
+            {
+                steps.Expand(inflated, scales, data);
+                tensor.Replace("scale", null);
+            }
+            else if (width > 1)
             {
                 Interleave(inflated, data, width);
             }
             tensor.Replace("data", new Block { Content = data, Offset = 0, Count = data.Length });
+        }
+
+        /// <summary>Of halves that are packed as steps: powers of two, one for each of as many equal rows.</summary>
+        private ReadOnlySpan<float> Scales(Table tensor, string path)
+        {
+            var type = (ElementType)tensor.Number("type");
+            if (type != ElementType.F16)
+            {
+                throw new AvatarFormatException(
+                    "type", path, "element type " + type + ", expected F16 of what is packed as steps");
+            }
+            Block scale = tensor.Block("scale");
+            int rows = scale == null ? 0 : scale.Count;
+            if (rows == 0 || Claimed(tensor, path) / 2 % rows != 0)
+            {
+                throw Tensors.Unfit(rows, type, tensors.Sides(tensor, path), path);
+            }
+            ReadOnlySpan<float> scales = tensors.View<float>(scale.Offset, 4 * rows);
+            foreach (float one in scales)
+            {
+                if (!Steps.IsScale(one))
+                {
+                    throw Refusal.Of(path + ".scale", "{0:g6}, expected a power of two from 2^-24 to 1", one);
+                }
+            }
+            return scales;
         }
 
         /// <summary>Room for planes, which one tensor after the other uses.</summary>

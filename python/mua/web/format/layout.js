@@ -4,7 +4,7 @@ export const IDENTIFIER = "MUAV";
 export const ROOT = "Avatar";
 
 /** @type {Record<string, string[]>} */
-export const ENUMS = {"ElementType": ["F32", "F16", "I8", "I32"], "Packing": ["Plain", "Deflate"], "Axes": ["MetresYUpRightHanded"], "RotationEncoding": ["SixD"], "WindowOrder": ["NewestFirst"]};
+export const ENUMS = {"ElementType": ["F32", "F16", "I8", "I32"], "Packing": ["Plain", "Deflate", "Steps"], "Axes": ["MetresYUpRightHanded"], "RotationEncoding": ["SixD"], "WindowOrder": ["NewestFirst"]};
 
 /** @type {Record<string, import("./parser.js").Field[]>} */
 export const TABLES = {

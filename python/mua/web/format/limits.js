@@ -1,11 +1,13 @@
 // Generated from python/mua/limits.py by tools/gen_layout.py; do not edit.
 
 export const MAJOR = 1;
-export const MINOR = 1;
+export const MINOR = 2;
 export const MAX_RANK = 4;
 export const LARGEST = 65504.0;
 export const UNPACKED_TIMES = 16;
 export const UNPACKED_ROOM = 1048576;
+export const LEAST_STEP = 5.960464477539063e-08;
+export const LARGEST_STEP = 1.0;
 export const STAGES = 5;
 export const MAX_JOINTS = 4096;
 export const MAX_LAYERS = 64;

@@ -2,6 +2,7 @@
 
 /** A number with so many significant digits, without trailing zeros: Python's `.6g`. */
 export function general(/** @type {number} */ value, /** @type {number} */ digits) {
+  if (!Number.isFinite(value)) return shortest(value);
   const [mantissa, exponent] = value.toExponential(digits - 1).split("e");
   const power = Number(exponent);
   if (power < -4 || power >= digits) return `${trimmed(mantissa)}e${signed(power)}`;

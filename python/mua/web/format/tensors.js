@@ -34,6 +34,14 @@ export function sides(/** @type {Tree} */ tensor, /** @type {string} */ path) {
   return shape;
 }
 
+/** The fault of a tensor of another number of scales than it has equal rows. */
+export const unfit = (
+  /** @type {number} */ rows,
+  /** @type {string} */ type,
+  /** @type {number[]} */ shape,
+  /** @type {string} */ path,
+) => fault("shape", `${path}.scale`, `${rows} scales do not fit ${type} ${listed(shape)}`);
+
 /** A tensor whose shape, bytes and scales agree. @returns {Stored} */
 function stored(/** @type {Tree} */ tensor, /** @type {string} */ path) {
   const shape = sides(tensor, path);
@@ -42,8 +50,7 @@ function stored(/** @type {Tree} */ tensor, /** @type {string} */ path) {
   if (product(shape) * SIZES[type] !== data.length)
     throw fault("shape", `${path}.data`, `${data.length} bytes do not fill ${type} ${listed(shape)}`);
   const rows = tensor.scale?.length ?? 0;
-  if ((type === "I8") !== rows > 0 || (rows && product(shape) % rows))
-    throw fault("shape", `${path}.scale`, `${rows} scales do not fit ${type} ${listed(shape)}`);
+  if ((type === "I8") !== rows > 0 || (rows && product(shape) % rows)) throw unfit(rows, type, shape, path);
   return { shape, type, data, scale: tensor.scale };
 }
 
@@ -126,10 +133,11 @@ function farthest(/** @type {Stored} */ found) {
 export function expanded(/** @type {Stored} */ found) {
   if (found.type === "F32") return words(found, Float32Array);
   if (found.type === "F16") return Float32Array.from(words(found, Uint16Array), half);
-  const values = words(found, Int8Array);
+  const stored = words(found, Int8Array);
   const scale = /** @type {Float32Array} */ (found.scale);
-  const row = values.length / scale.length;
-  return Float32Array.from(values, (value, i) => value * scale[Math.floor(i / row)]);
+  const [values, row] = [new Float32Array(stored.length), stored.length / scale.length];
+  for (let r = 0; r < scale.length; r++) for (let i = r * row; i < (r + 1) * row; i++) values[i] = stored[i] * scale[r];
+  return values;
 }
 
 /** The value of a half float's bits. */

@@ -1,0 +1,92 @@
+using System;
+using System.Runtime.InteropServices;
+
+namespace Mua.Format
+{
+    /// <summary>
+    /// Halves from the steps that a packed tensor holds: small whole numbers, 0, -1, 1, -2, 2 as 0, 1, 2, 3, 4, in a plane of their
+    /// low bytes and one of their high bytes, times a power of two for each row. Reference: python/mua/asset/packing.py.
+    /// </summary>
+    internal sealed class Steps
+    {
+        private const int Numbers = 1 << 16;
+        private const uint LeastNormal = 113 << 23; // bits of 2^-14
+        private const uint BiasDifference = (127 - 15) << 10;
+        private const int DroppedBits = 23 - 10;
+
+        private readonly ushort[][] halves = new ushort[25][]; // of every number, by how often 1 is halved
+
+        [StructLayout(LayoutKind.Explicit)]
+        private struct Bits
+        {
+            [FieldOffset(0)] public float Value;
+            [FieldOffset(0)] public uint Word;
+        }
+
+        /// <summary>Whether rows may have such a scale: a power of two from 2^-24 to 1.</summary>
+        public static bool IsScale(float scale)
+        {
+            var bits = new Bits { Value = scale };
+            return scale >= Limits.LeastStep && scale <= Limits.LargestStep && (bits.Word & 0x7FFFFF) == 0;
+        }
+
+        /// <summary>Writes the halves of two planes, one row for each scale.</summary>
+        public void Expand(byte[] planes, ReadOnlySpan<float> scales, byte[] data)
+        {
+            Span<ushort> found = MemoryMarshal.Cast<byte, ushort>(data);
+            var low = new ReadOnlySpan<byte>(planes, 0, found.Length);
+            var high = new ReadOnlySpan<byte>(planes, found.Length, found.Length);
+            int row = found.Length / scales.Length;
+            for (int i = 0; i < scales.Length; i++)
+            {
+                Expand(low.Slice(i * row, row), high.Slice(i * row, row), Known(scales[i]), found.Slice(i * row, row));
+            }
+        }
+
+        /// <summary>One row, four numbers at a step.</summary>
+        private static void Expand(ReadOnlySpan<byte> low, ReadOnlySpan<byte> high, ushort[] known, Span<ushort> found)
+        {
+            ReadOnlySpan<uint> lows = MemoryMarshal.Cast<byte, uint>(low), highs = MemoryMarshal.Cast<byte, uint>(high);
+            Span<ulong> words = MemoryMarshal.Cast<ushort, ulong>(found);
+            for (int i = 0; i < words.Length; i++)
+            {
+                uint l = lows[i], h = highs[i];
+                words[i] = (l | h) == 0 ? 0 : known[l & 0xFF | (h & 0xFF) << 8]
+                    | (ulong)known[l >> 8 & 0xFF | h & 0xFF00] << 16
+                    | (ulong)known[l >> 16 & 0xFF | h >> 8 & 0xFF00] << 32 | (ulong)known[l >> 24 | h >> 16 & 0xFF00] << 48;
+            }
+            for (int at = 4 * words.Length; at < found.Length; at++)
+            {
+                found[at] = known[low[at] | high[at] << 8];
+            }
+        }
+
+        private ushort[] Known(float scale)
+        {
+            int halvings = 127 - (int)(new Bits { Value = scale }.Word >> 23);
+            ushort[] known = halves[halvings];
+            if (known == null)
+            {
+                halves[halvings] = known = new ushort[Numbers];
+                for (int i = 0; i < Numbers; i++)
+                {
+                    bool isNegative = i % 2 != 0;
+                    known[i] = (ushort)(HalfOf((isNegative ? i / 2 + 1 : i / 2) * scale) | (isNegative ? 0x8000u : 0u));
+                }
+            }
+            return known;
+        }
+
+        /// <summary>The half nearest to a multiple of 2^-24 that is not negative, ties to even.</summary>
+        private static uint HalfOf(float value)
+        {
+            uint word = new Bits { Value = value }.Word;
+            if (word < LeastNormal)
+            {
+                return (uint)(value / (float)Limits.LeastStep);
+            }
+            uint half = (1u << (DroppedBits - 1)) - 1 + ((word >> DroppedBits) & 1);
+            return ((word + half) >> DroppedBits) - BiasDifference;
+        }
+    }
+}
