@@ -78,7 +78,7 @@ PRESETS = {
         hidden=128,
         sweeps=10,
         regression=Schedule(steps=4000, batch=256, lr=3e-3, epochs=2000),
-        finetune=Schedule(steps=2000, batch=16, lr=5e-4, warm_up=0.1, epochs=60),
+        finetune=Schedule(steps=2000, batch=12, lr=5e-4, warm_up=0.1, epochs=72),
         pictures=12,
     ),
     "preview": Settings(
