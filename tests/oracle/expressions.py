@@ -74,7 +74,7 @@ def vertices(faces: Array, v: Array, m: Array) -> dict[int, tuple[float, Array, 
     for i in np.unique(faces[moves]):
         star = np.flatnonzero((faces == i).any(axis=1))
         area = sum(parts[t][0] for t in star)
-        g, p = summed([parts[t][0] * parts[t][1] for t in star]), sum(parts[t][0] * parts[t][2] for t in star)
+        g, p = summed([parts[t][0] * parts[t][1] for t in star]), np.sum([parts[t][0] * parts[t][2] for t in star], 0)
         bent[int(i)] = (1.0, g / area, p / area) if area > 0 else (0.0, np.zeros(4), np.zeros((3, 3)))
     return bent
 
@@ -96,7 +96,7 @@ def bend(texture: Array, corners: Array, barycentrics: Array, faces: Array, v: A
         if whole == 0 or not any(b > 0 and i in turned for b, i in zip(barycentrics[e], corners[e], strict=True)):
             continue
         g = normalise(summed([b * turn for b, _, turn, _ in held]))
-        p = sum(b * stretch for b, _, _, stretch in held) / whole
+        p = np.sum([b * stretch for b, _, _, stretch in held], axis=0) / whole
         bent[e, 0:3] = columns(g) @ texture[e, 0:3]
         bent[e, 3:7] = multiply(g, texture[e, 3:7])
         stretch = np.linalg.norm(p @ columns(normalise(texture[e, 3:7])), axis=0)
