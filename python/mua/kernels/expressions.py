@@ -68,7 +68,7 @@ def reach_of(
 ) -> Reach:
     """The triangles that have a corner beside the vertices, and the texels on these."""
     beside = faces[np.isin(faces, vertices).any(axis=1)]
-    held = np.isin(faces, beside).any(axis=1)
+    held = np.asarray(np.isin(faces, beside).any(axis=1))
     bent, corners = np.unique(faces[held], return_inverse=True)
     corners = corners.reshape(-1, 3).astype(np.int32)
     texels = np.flatnonzero(held[triangles])

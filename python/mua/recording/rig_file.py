@@ -87,5 +87,5 @@ def _rig(a: dict[str, Array]) -> Rig:
 def _expressions(a: dict[str, Array]) -> Expressions | None:
     if not all(name in a for name in EXPRESSIONS):
         return None
-    names, *parts = (a[name] for name in EXPRESSIONS)
-    return Expressions(tuple(str(name) for name in names), *parts, gains=a.get(GAINS))
+    names, starts, vertices, offsets = (a[name] for name in EXPRESSIONS)
+    return Expressions(tuple(str(name) for name in names), starts, vertices, offsets, a.get(GAINS))
