@@ -201,6 +201,8 @@ def test_expressions_come_back_up_to_storage(storage: Storage) -> None:
     np.testing.assert_array_equal(theirs.starts, ours.starts)
     np.testing.assert_array_equal(theirs.vertices, ours.vertices)
     np.testing.assert_allclose(theirs.offsets, ours.offsets, rtol=0, atol=step)
+    assert ours.gains is not None
+    assert theirs.gains is not None
     np.testing.assert_allclose(theirs.gains, ours.gains, rtol=0, atol=2.0**-8 if step else 0)
     np.testing.assert_array_equal(found.clips[0].expressions, avatar.clips[0].expressions)
 

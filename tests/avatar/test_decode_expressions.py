@@ -128,7 +128,7 @@ def test_texels_at_a_vertex_bend_as_the_triangles_about_it_on_average() -> None:
     turn, stretch, weight = np.zeros(4), np.zeros((3, 3)), 0.0
     for face in faces:
         before, after = mesh[face], (mesh + moved)[face]
-        area = min(np.linalg.norm(np.cross(c[1] - c[0], c[2] - c[0])) / 2 for c in (before, after))
+        area = min(float(np.linalg.norm(np.cross(c[1] - c[0], c[2] - c[0]))) / 2 for c in (before, after))
         own, symmetric = polar(map_of(before, after))
         turn += area * Rotation.from_matrix(own).as_quat(canonical=True, scalar_first=True)
         stretch, weight = stretch + area * symmetric, weight + area
