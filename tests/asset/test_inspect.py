@@ -75,7 +75,7 @@ def test_expressions_are_named(tmp_path: Path) -> None:
     write(path, with_expressions(synthetic_avatar()))
     held = json.loads(inspect("--json", path).out)
     assert held["expressions"] == ["jawOpen", "eyeBlinkLeft", "nothing", "Mund auf"]
-    assert held["bytes_by_part"]["expressions"] == 4 * (5 + 7) + 2 * 3 * 7 + 4 * 4  # entries, offsets, shapes
+    assert held["bytes_by_part"]["expressions"] == 4 * (5 + 7) + 2 * 4 * 7 + 5 * 4  # entries, offsets and gains, shapes
     assert "4: jawOpen, eyeBlinkLeft, nothing, Mund auf" in inspect(path).out
 
 

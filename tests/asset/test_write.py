@@ -201,7 +201,23 @@ def test_expressions_come_back_up_to_storage(storage: Storage) -> None:
     np.testing.assert_array_equal(theirs.starts, ours.starts)
     np.testing.assert_array_equal(theirs.vertices, ours.vertices)
     np.testing.assert_allclose(theirs.offsets, ours.offsets, rtol=0, atol=step)
+    assert ours.gains is not None
+    assert theirs.gains is not None
+    np.testing.assert_allclose(theirs.gains, ours.gains, rtol=0, atol=2.0**-8 if step else 0)
     np.testing.assert_array_equal(found.clips[0].expressions, avatar.clips[0].expressions)
+
+
+def test_expressions_without_light_store_none() -> None:
+    avatar = with_expressions(synthetic_avatar())
+    held = avatar.rig.expressions
+    assert held
+    for gains in (None, np.zeros(len(held.vertices), np.float32)):
+        unlit = dataclasses.replace(avatar.rig, expressions=dataclasses.replace(held, gains=gains))
+        tree = parse_checked(encode(dataclasses.replace(avatar, rig=unlit)))
+        assert "gains" not in tree["expressions"]
+        found = decode_tree(tree).rig.expressions
+        assert found
+        assert found.gains is None
 
 
 def test_what_has_no_expressions_stores_none() -> None:

@@ -13,7 +13,16 @@ from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.avatar.decode import Splats, express
 from mua.errors import InputError
-from mua.kernels.expressions import LEAST, MOST_STRETCH, bend_texels, bend_triangles, by_vertex, reach_of
+from mua.kernels.expressions import (
+    LEAST,
+    MOST_STRETCH,
+    bend_texels,
+    bend_triangles,
+    bend_vertices,
+    by_vertex,
+    reach_of,
+    stars_of,
+)
 from mua.pose.resample import resample
 from mua.pose.skeleton import Pose
 from mua.rig.expressions import Expressions
@@ -40,7 +49,9 @@ def soup(rng: np.random.Generator, count: int) -> tuple[Array, Array, Array]:
 
 
 def bend(mesh: Array, moved: Array, faces: Array, triangles: Array, texture: Array) -> Array:
-    return bend_texels(*bend_triangles(mesh, moved, faces), triangles, texture)
+    """The middles of triangles."""
+    bends = bend_vertices(bend_triangles(mesh, moved, faces), *stars_of(faces, len(mesh)))
+    return bend_texels(bends, faces[triangles], np.full((len(texture), 3), 1 / 3, mesh.dtype), texture)
 
 
 def assert_bends_as_solved(dtype: type, bound: float) -> None:
@@ -65,7 +76,7 @@ def assert_bends_as_solved(dtype: type, bound: float) -> None:
         np.testing.assert_array_equal(found[10:], texel[10:])
 
 
-def test_a_texel_follows_the_polar_rotation_and_the_stretch_of_its_triangle() -> None:
+def test_a_texel_follows_the_polar_rotation_and_the_stretch_of_a_lone_triangle() -> None:
     assert_bends_as_solved(np.float64, 1e-10)
 
 
@@ -95,7 +106,62 @@ def test_a_splat_grows_with_its_triangle_up_to_a_bound_and_keeps_its_thickness()
         np.testing.assert_allclose(np.exp(bent[0, 7:10]), [grown, grown, 1], rtol=ROUNDING)
 
 
-def test_texels_of_triangles_that_vanish_stay_as_they_are() -> None:
+def fan(rng: np.random.Generator, count: int) -> tuple[Array, Array]:
+    """Vertices about one in the middle, and the triangles between them."""
+    around = np.linspace(0, 2 * np.pi, count, endpoint=False)
+    mesh = np.vstack([[0, 0, 0], np.stack([np.cos(around), np.sin(around), 0 * around], axis=1)])
+    mesh += rng.normal(0, 0.1, mesh.shape)
+    ring = np.arange(count)
+    return mesh, np.stack([0 * ring, 1 + ring, 1 + (ring + 1) % count], axis=1)
+
+
+def test_texels_at_a_vertex_bend_as_the_triangles_about_it_on_average() -> None:
+    """By the lesser of their areas; on either side of an edge texels bend alike."""
+    rng, count = np.random.default_rng(6), 7
+    mesh, faces = fan(rng, count)
+    moved = rng.normal(0, 0.2, mesh.shape)
+    texture = np.tile(rng.normal(size=(1, 23)), (count, 1))
+    bends = bend_vertices(bend_triangles(mesh, moved, faces), *stars_of(faces, len(mesh)))
+    middle = np.tile([1.0, 0, 0], (count, 1))
+    found = bend_texels(bends, faces, middle, texture)
+    np.testing.assert_allclose(found, found[[0] * count], rtol=0, atol=ROUNDING)
+    turn, stretch, weight = np.zeros(4), np.zeros((3, 3)), 0.0
+    for face in faces:
+        before, after = mesh[face], (mesh + moved)[face]
+        area = min(float(np.linalg.norm(np.cross(c[1] - c[0], c[2] - c[0]))) / 2 for c in (before, after))
+        own, symmetric = polar(map_of(before, after))
+        turn += area * Rotation.from_matrix(own).as_quat(canonical=True, scalar_first=True)
+        stretch, weight = stretch + area * symmetric, weight + area
+    rotated = Rotation.from_quat(turn, scalar_first=True)
+    np.testing.assert_allclose(found[0, 0:3], rotated.apply(texture[0, 0:3]), rtol=0, atol=1e-10)
+    axes = Rotation.from_quat(texture[0, 3:7], scalar_first=True).as_matrix()
+    grown = np.log(np.linalg.norm(stretch / weight @ axes, axis=0))
+    np.testing.assert_allclose(found[0, 7:10], texture[0, 7:10] + grown, rtol=0, atol=1e-10)
+
+
+def test_quaternions_of_opposite_signs_do_not_cancel() -> None:
+    """Nearly half a turn, whose quaternions with a w of 0 or more lie far apart."""
+    mesh, faces = fan(np.random.default_rng(7), 12)
+    whole = Rotation.from_euler("x", np.pi)
+    moved = whole.apply(mesh) - mesh + np.random.default_rng(8).normal(0, 0.02, mesh.shape)
+    texture = np.random.default_rng(9).normal(size=(12, 23))
+    bent = bend(mesh, moved, faces, np.arange(12), texture)
+    np.testing.assert_allclose(bent[:, 0:3], whole.apply(texture[:, 0:3]), rtol=0, atol=0.3)
+
+
+def test_texels_of_a_triangle_that_vanishes_bend_as_their_neighbours() -> None:
+    """Also where it is a line before; a square of which one half is squeezed or opened."""
+    open_square = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]])
+    shut = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0.5, 0.5, 0]])
+    faces, turn = np.array([[0, 1, 2], [1, 3, 2]]), Rotation.from_euler("z", 40, degrees=True)
+    texture = np.random.default_rng(10).normal(size=(2, 23))
+    for before, after in ((open_square, shut), (shut, open_square)):
+        bent = bend(before, turn.apply(after) - before, faces, np.array([0, 1]), texture)
+        np.testing.assert_allclose(bent[:, 0:3], turn.apply(texture[:, 0:3]), rtol=0, atol=1e-9)
+        np.testing.assert_allclose(bent[:, 7:10], texture[:, 7:10], rtol=0, atol=1e-9)
+
+
+def test_texels_stay_as_they_are_where_all_triangles_vanish() -> None:
     flat, faces = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), np.array([[0, 1, 2]])
     texture = np.random.default_rng(3).normal(size=(1, 23))
     line, point, thin = flat * [1, 0, 0], flat * 0, flat * [1, LEAST / 2, 1]
@@ -107,31 +173,36 @@ def test_texels_of_triangles_that_vanish_stay_as_they_are() -> None:
 def test_lists_by_vertex_hold_every_entry_once_and_sum_to_the_same() -> None:
     rng, count = np.random.default_rng(4), 40
     moved = [np.sort(rng.permutation(count)[:n]) for n in (7, 0, 13, 1, 25)]
-    offsets = rng.normal(size=(sum(map(len, moved)), 3))
+    changes = rng.normal(size=(sum(map(len, moved)), 4))
     starts = np.cumsum([0, *map(len, moved)])
-    expressions = Expressions(tuple("abcde"), starts, np.concatenate(moved), offsets)
-    targets, weights = by_vertex(starts, expressions.vertices, offsets), rng.random(5)
+    expressions = Expressions(tuple("abcde"), starts, np.concatenate(moved), changes[:, :3], changes[:, 3])
+    targets, weights = by_vertex(starts, expressions.vertices, expressions.changes), rng.random(5)
     assert (np.diff(targets.vertices) > 0).all()
-    found = np.zeros((count, 3))
+    found = np.zeros((count, 4))
     for vertex, first, end in zip(targets.vertices, targets.starts[:-1], targets.starts[1:], strict=True):
         assert (np.diff(targets.expressions[first:end]) > 0).all()
-        found[vertex] = weights[targets.expressions[first:end]] @ targets.offsets[first:end]
+        found[vertex] = weights[targets.expressions[first:end]] @ targets.changes[first:end]
     expected = expressions.displacement(weights, vertices=count)
-    np.testing.assert_allclose(found, expected, rtol=0, atol=ROUNDING)
+    np.testing.assert_allclose(found[:, :3], expected, rtol=0, atol=ROUNDING)
+    np.testing.assert_allclose(found[:, 3], expressions.brightening(weights, vertices=count), rtol=0, atol=ROUNDING)
 
 
 def test_nothing_is_reached_where_nothing_moves() -> None:
-    targets = by_vertex(np.zeros(4, int), np.zeros(0, int), np.zeros((0, 3)))
+    targets = by_vertex(np.zeros(4, int), np.zeros(0, int), np.zeros((0, 4)))
     assert (len(targets.vertices), targets.starts.tolist()) == (0, [0])
     reach = reach_of(targets.vertices, np.array([[0, 1, 2]]), np.zeros(9, int))
-    assert (reach.triangles.shape, reach.texels.shape) == ((0,), (0, 2))
+    assert (reach.corners.shape, reach.texels.shape, reach.starts.tolist()) == ((0, 3), (0, 2), [0])
 
 
-def test_in_reach_are_the_texels_of_the_triangles_of_moved_vertices() -> None:
-    faces = np.array([[0, 1, 2], [1, 2, 3], [3, 4, 5], [2, 4, 6]])
-    reach = reach_of(np.array([0, 3]), faces, np.array([3, 2, 0, 1, 2, 3]))
-    assert reach.triangles.tolist() == [0, 1, 2]
-    assert reach.texels.tolist() == [[1, 2], [2, 0], [3, 1], [4, 2]]
+def test_in_reach_are_triangles_that_have_a_corner_beside_what_moves() -> None:
+    faces = np.array([[0, 1, 2], [5, 6, 7], [1, 2, 4], [4, 5, 6], [2, 8, 9]])
+    reach = reach_of(np.array([0]), faces, np.array([3, 2, 0, 1, 2, 3]))
+    assert reach.triangles.tolist() == [0, 2, 4]
+    assert reach.vertices.tolist() == [0, 1, 2, 4, 8, 9]
+    assert reach.corners.tolist() == [[0, 1, 2], [1, 2, 3], [2, 4, 5]]
+    assert reach.texels.tolist() == [[1, 1], [2, 0], [4, 1]]
+    stars = [reach.stars[start:end].tolist() for start, end in zip(reach.starts, reach.starts[1:], strict=False)]
+    assert stars == [[0], [0, 1], [0, 1, 2], [1], [2], [2]]
 
 
 def arrays(splats: Splats) -> dict[str, Array]:
@@ -159,9 +230,11 @@ def test_weights_of_0_give_the_bytes_of_the_avatar_without(avatar: Avatar, level
 
 @pytest.mark.parametrize("level", [0, 1, 2])
 def test_only_texels_in_reach_change_and_they_do(avatar: Avatar, level: int) -> None:
-    shown = avatar.at_level(level)
-    plain, spoken = (shown.decode("wave", 3, expressions=named) for named in ({}, {"jawOpen": 0.7}))
-    near = reach_of(np.array([6, 7, 8]), shown.rig.mesh.faces, shown.rig.texels.triangles).texels[:, 0]
+    top = np.array([9, 10, 11])
+    crown = Expressions(("crown",), np.array([0, 3]), top, np.random.default_rng(7).normal(0, 0.1, (3, 3)))
+    shown = replace(without(avatar), rig=replace(avatar.rig, expressions=crown)).at_level(level)
+    plain, spoken = (shown.decode("wave", 3, expressions=named) for named in ({}, {"crown": 0.7}))
+    near = reach_of(top, shown.rig.mesh.faces, shown.rig.texels.triangles).texels[:, 0]
     far = np.setdiff1d(np.arange(len(plain)), near)
     assert len(near)
     assert len(far)
@@ -171,7 +244,28 @@ def test_only_texels_in_reach_change_and_they_do(avatar: Avatar, level: int) -> 
         if name != "normals":
             assert (after[near] != before[near]).any(axis=1).all(), name
     assert spoken.texel_dq.tobytes() == plain.texel_dq.tobytes()
-    np.testing.assert_array_equal(np.flatnonzero((spoken.mesh != plain.mesh).any(axis=1)), [6, 7, 8])
+    np.testing.assert_array_equal(np.flatnonzero((spoken.mesh != plain.mesh).any(axis=1)), top)
+
+
+def test_colours_become_brighter_by_a_share_of_them(avatar: Avatar) -> None:
+    """Alike from all sides; by what the corners of a texel's triangle have, and without light not at all."""
+    held, weights = avatar.rig.expressions, {"jawOpen": 0.7, "Mund auf": 0.5}
+    assert held is not None
+    assert held.gains is not None
+    unlit = replace(avatar, rig=replace(avatar.rig, expressions=replace(held, gains=None)))
+    plain, found = (one.decode("wave", 3, expressions=weights, dtype=np.float64).texture for one in (unlit, avatar))
+    gains = np.zeros(len(avatar.rig.mesh.vertices))
+    for name, weight in weights.items():
+        entries = slice(*held.starts[[held.names.index(name), held.names.index(name) + 1]])
+        gains[held.vertices[entries]] += weight * held.gains[entries]
+    texels = avatar.rig.texels
+    share = np.sum(texels.barycentrics * gains[avatar.rig.mesh.faces[texels.triangles]], axis=1)
+    colours, before = (0.5 + 0.28209479177387814 * texture[:, 11:14] for texture in (found, plain))
+    np.testing.assert_allclose(colours, before * (1 + share[:, None]), rtol=0, atol=1e-6)
+    assert np.abs(share).max() > 0.1
+    others = np.delete(np.arange(23), [11, 12, 13])
+    assert found[:, others].tobytes() == plain[:, others].tobytes()
+    assert found[share == 0].tobytes() == plain[share == 0].tobytes()
 
 
 def test_a_clip_moves_the_face_by_its_weights_at_any_rate(avatar: Avatar) -> None:

@@ -61,14 +61,25 @@ def test_upsampling_costs_what_its_valid_texels_need() -> None:
 
 
 def test_a_face_costs_what_its_entries_and_the_texels_in_reach_need() -> None:
-    entries = {"vertices": 4 * 10, "starts": 4 * 11, "expressions": 4 * 25, "offsets": 12 * 25, "weights": 4 * 3}
-    vertices = bound("SumTargets", entries | {"moved": 12 * 99, "mesh": 12 * 99}, vertex_count=10)
-    assert cost(vertices) == Work(bytes=40 + 44 + 100 + 300 + 12 + 36 * 10, flops=2 * 75 + 30)
-    read = {"triangles": 4 * 6, "faces": 12 * 7, "mesh": 12 * 9, "moved": 12 * 9, "bends": 64 * 6}
+    entries = {"vertices": 4 * 10, "starts": 4 * 11, "expressions": 4 * 25, "changes": 16 * 25, "weights": 4 * 3}
+    vertices = bound("SumTargets", entries | {"moved": 16 * 99, "mesh": 12 * 99}, vertex_count=10)
+    assert cost(vertices) == Work(bytes=40 + 44 + 100 + 400 + 12 + 40 * 10, flops=2 * 100 + 30)
+    read = {"vertices": 4 * 8, "corners": 12 * 6, "mesh": 12 * 99, "moved": 12 * 99, "triangle_bends": 48 * 6}
     triangles = bound("BendTriangles", read, triangle_count=6)
-    assert cost(triangles) == Work(bytes=24 + 84 + 2 * 108 + 384, flops=6 * work.BEND_TRIANGLE)
-    texels = bound("BendTexels", {"reached": 8 * 5, "bends": 64 * 6, "texel_channels": 9}, texel_count=5)
-    assert cost(texels) == Work(bytes=40 + 384 + 5 * (24 + 24), flops=5 * work.BEND_TEXEL)
+    assert cost(triangles) == Work(bytes=32 + 72 + 28 * 8 + 288, flops=6 * work.BEND_TRIANGLE)
+    read = {"starts": 4 * 9, "stars": 12 * 6, "triangle_bends": 48 * 6, "vertex_bends": 48 * 8}
+    vertices = bound("BendVertices", read, vertex_count=8)
+    assert cost(vertices) == Work(bytes=36 + 72 + 288 + 384, flops=18 * work.ADD_BEND + 8 * 12)
+    read = {
+        "reached": 8 * 5,
+        "texels": 8 * 99,
+        "corners": 12 * 6,
+        "vertices": 4 * 8,
+        "vertex_bends": 48 * 8,
+        "moved": 9,
+    }
+    texels = bound("BendTexels", read, texel_count=5)
+    assert cost(texels) == Work(bytes=40 + 72 + 32 + 384 + 16 * 8 + 5 * (8 + 32 + 32), flops=5 * work.BEND_TEXEL)
 
 
 def projected(texels: int, vertices: int, faces: int, eyes: int) -> Bound:

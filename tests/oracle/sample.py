@@ -80,10 +80,15 @@ def of_expressions(avatar: Record) -> Iterator[tuple[str, str, Any]]:
     pose = motion.poses(avatar, avatar.clips[0])[FRAME]
     yield "12", f"w of frame {FRAME}", pose.weights
     yield "12.1", "m", expressions.moved(avatar, pose)
+    yield "12.1", "s", expressions.brightened(avatar, pose)
+    bent = expressions.vertices(avatar.template.faces, avatar.coarse.mean, expressions.moved(avatar, pose))
+    yield "12.3", "vertices that bend", sorted(bent)
+    yield "12.3", "g on the mean mesh", [bent[i][1] for i in sorted(bent)]
+    yield "12.3", "P on the mean mesh", [bent[i][2] for i in sorted(bent)]
     for number in range(1 + len(avatar.texels.levels)):
         found = splats.decode(avatar, motion.poses(avatar, avatar.clips[0]), FRAME, number)
-        yield "12.3", f"T of level {number}", found.texture
-        yield "12.3", f"centres of level {number}", found.centres
+        yield "12.5", f"T of level {number}", found.texture
+        yield "12.4", f"centres of level {number}", found.centres
 
 
 if __name__ == "__main__":

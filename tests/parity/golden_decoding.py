@@ -3,7 +3,19 @@
 from functools import partial
 
 import numpy as np
-from bent_cases import BENT_BOUND, TURNED_BOUND, random_targets, random_texture, triangles
+from bent_cases import (
+    LIT_BOUND,
+    MEAN_BOUND,
+    TURNED_BOUND,
+    WEIGHED_BOUND,
+    random_bends,
+    random_light,
+    random_places,
+    random_stars,
+    random_targets,
+    random_texture,
+    triangles,
+)
 from dwt_cases import taps, upsampling_bound
 from golden_case import UNTOUCHED, UNWRITTEN, Case, Expected, halves
 from layer_cases import layer, shader_bound
@@ -19,7 +31,7 @@ from stored import STORAGES, groups, store
 from mua.asset.tensors import Element
 from mua.kernels.blend_subbands import blend_detail, blend_ll
 from mua.kernels.dq_skinning import blend_vertices
-from mua.kernels.expressions import bend_texels, bend_triangles
+from mua.kernels.expressions import bend_texels, bend_triangles, bend_vertices, brighten_texels
 from mua.kernels.inverse_dwt import (
     inverse_dwt,
     pack_planes,
@@ -50,7 +62,7 @@ def dq_skinning_cases() -> list[Case]:
 
 
 def expressions_cases() -> list[Case]:
-    return [_targets(), _triangles(), _texels()]
+    return [_targets(), _triangles(), _bent_vertices(), _texels()]
 
 
 def _layer(storage: Element, *, relu: int) -> Case:
@@ -221,11 +233,11 @@ def _targets() -> Case:
     targets = random_targets(rng, 2 * np.arange(count), expressions)
     weights = rng.random(expressions).astype(np.float32)
     mesh = rng.uniform(-1, 1, (2 * count, 3)).astype(np.float32)
-    moved = np.zeros((count, 3))
-    entries = weights[targets.expressions, None].astype(float) * targets.offsets
+    moved = np.zeros((count, 4))
+    entries = weights[targets.expressions, None].astype(float) * targets.changes
     np.add.at(moved, np.repeat(np.arange(count), np.diff(targets.starts)), entries)
     bound = 2 * expressions * ULP * float(np.abs(entries).max()) * expressions
-    untouched = np.full((2 * count, 3), UNTOUCHED)
+    untouched = np.full((2 * count, 4), UNTOUCHED)
     return Case(
         "five expressions",
         "SumTargets",
@@ -233,13 +245,13 @@ def _targets() -> Case:
         {"vertex_count": count},
         {
             **{"vertices": targets.vertices.astype(np.uint32), "starts": targets.starts.astype(np.uint32)},
-            **{"expressions": targets.expressions.astype(np.uint32), "offsets": targets.offsets, "weights": weights},
+            **{"expressions": targets.expressions.astype(np.uint32), "changes": targets.changes, "weights": weights},
             **{"moved": untouched, "mesh": mesh},
         },
         (
-            Expected("moved", "float", moved, bound, length=3, period=6),
-            Expected("moved", "float", untouched[1::2], first=3, length=3, period=6),
-            Expected("mesh", "float", mesh[::2] + moved, bound + 2 * ULP, length=3, period=6),
+            Expected("moved", "float", moved, bound, length=4, period=8),
+            Expected("moved", "float", untouched[1::2], first=4, length=4, period=8),
+            Expected("mesh", "float", mesh[::2] + moved[:, :3], bound + 2 * ULP, length=3, period=6),
             Expected("mesh", "float", mesh[1::2], first=3, length=3, period=6),
         ),
     )
@@ -249,50 +261,74 @@ def _triangles() -> Case:
     """The first triangles bend, the others have no area or do not move; one is out of reach."""
     bent = triangles(np.random.default_rng(7), 70)
     count, inner = len(bent.faces), bent.bending
-    turns, maps = bend_triangles(bent.mesh.astype(float), bent.moved.astype(float), bent.faces)
-    held = np.concatenate([turns[:, None], np.pad(maps.swapaxes(1, 2), ((0, 0), (0, 0), (0, 1)))], axis=1)
+    held = bend_triangles(bent.mesh.astype(float), bent.moved.astype(float), bent.faces)
+    vertices = np.random.default_rng(9).permutation(len(bent.mesh))
+    places = np.argsort(vertices)[bent.faces]
     return Case(
         "edges of 0.2 to 2 metres",
         "BendTriangles",
         groups((count - 1, 64)),
         {"triangle_count": count - 1},
         {
-            "triangles": np.append(np.arange(1, count - 1), 0).astype(np.uint32),
-            **{"faces": bent.faces, "moved": bent.moved, "mesh": bent.mesh + bent.moved},
-            "bends": np.full((count, 4, 4), UNTOUCHED),
+            **{"vertices": vertices.astype(np.uint32), "corners": places[1:].astype(np.uint32)},
+            **{"moved": np.pad(bent.moved, ((0, 0), (0, 1))), "mesh": bent.mesh + bent.moved},
+            "triangle_bends": np.full((count, 3, 4), UNTOUCHED),
         },
         (
-            Expected("bends", "float", held[1:inner], BENT_BOUND),
-            Expected("bends", "float", np.zeros((3, 4)), first=16 * (inner - 1), length=4, period=16),
-            Expected("bends", "float", np.full((3, 12), UNTOUCHED), first=16 * (inner - 1) + 4, length=12, period=16),
-            Expected("bends", "float", held[:1], BENT_BOUND, first=16 * (count - 2)),
-            Expected("bends", "float", np.full(16, UNTOUCHED), first=16 * (count - 1)),
+            Expected("triangle_bends", "float", held[1:inner], WEIGHED_BOUND),
+            Expected("triangle_bends", "float", held[inner : inner + 3], first=12 * (inner - 1)),
+            Expected("triangle_bends", "float", held[-1:], WEIGHED_BOUND, first=12 * (count - 2)),
+            Expected("triangle_bends", "float", np.full(12, UNTOUCHED), first=12 * (count - 1)),
+        ),
+    )
+
+
+def _bent_vertices() -> Case:
+    """About each vertex up to 12 triangles, some of no area and some that do not move."""
+    count = 70
+    rows, starts, stars = random_stars(np.random.default_rng(10), count)
+    expected = bend_vertices(rows.astype(float), starts.astype(int), stars.astype(int))
+    return Case(
+        "up to 12 triangles about each",
+        "BendVertices",
+        groups((count, 64)),
+        {"vertex_count": count},
+        {
+            **{"starts": starts, "stars": stars, "triangle_bends": rows.reshape(-1, 3, 4)},
+            "vertex_bends": np.full((count + 1, 3, 4), UNTOUCHED),
+        },
+        (
+            Expected("vertex_bends", "float", expected, MEAN_BOUND),
+            Expected("vertex_bends", "float", np.full(12, UNTOUCHED), first=12 * count),
         ),
     )
 
 
 def _texels() -> Case:
-    """The first texels bend, those after them are on a triangle that does not, the last are out of reach."""
+    """The first texels bend and are lit, the next are between corners that do not, the last are out of reach."""
     rng, count, still, beyond = np.random.default_rng(8), 70, 3, 4
-    bent = triangles(rng, count)
-    turns, maps = bend_triangles(bent.mesh.astype(float), bent.moved.astype(float), bent.faces)
-    turns, maps = turns.astype(np.float32), maps.astype(np.float32)
-    texels = count + still + beyond
+    bends, texels = random_bends(rng, count + 3, still=3), count + still + beyond
+    corners = np.stack([rng.permutation(count), *rng.integers(0, count + 3, (2, count))], axis=1)
+    corners = np.vstack([corners, [count, count + 1, count + 2]])
     places = np.concatenate([rng.permutation(count), np.full(still + beyond, count)])
-    texture = random_texture(rng, texels)
+    texture, (shares, barycentrics) = random_texture(rng, texels), random_places(rng, texels)
+    vertices, light = random_light(rng, len(bends), dark=3)
     halves_of = np.ascontiguousarray(texture.astype(np.float16).reshape(-1, 6, 4).swapaxes(0, 1))
     words = halves_of.view(np.uint32).reshape(6, texels, 2)
-    exact = bend_texels(turns.astype(float), maps.astype(float), places, texture.astype(float))[:count]
-    bends = np.concatenate([turns[:, None], np.pad(maps.swapaxes(1, 2), ((0, 0), (0, 0), (0, 1)))], axis=1)
-    written, kept = partial(halves, "texel_channels", bound=TURNED_BOUND), partial(Expected, "texel_channels", "uint")
+    exact = bend_texels(bends.astype(float), corners[places], barycentrics, texture.astype(float))
+    gains = light[vertices, 3].astype(float)
+    exact = brighten_texels(gains, corners[places], barycentrics, np.delete(exact, 11, axis=1))[:count]
+    written, lit = (partial(halves, "texel_channels", bound=bound) for bound in (TURNED_BOUND, LIT_BOUND))
+    kept = partial(Expected, "texel_channels", "uint")
     return Case(
-        "triangles with edges of 0.2 to 2 metres",
+        "turns of up to 60 degrees",
         "BendTexels",
         groups((count + still, 64)),
         {"texel_count": count + still, "splat_count": texels},
         {
             "reached": np.stack([np.arange(texels), places], axis=1)[: count + still].astype(np.uint32),
-            **{"bends": bends, "texel_channels": words},
+            **{"texels": shares, "corners": corners.astype(np.uint32), "vertex_bends": bends.reshape(-1, 3, 4)},
+            **{"vertices": vertices, "moved": light, "texel_channels": words},
         },
         (
             written(exact[:, 0:4]),
@@ -302,6 +338,8 @@ def _texels() -> Case:
             written(exact[:, 8:10], first=4 * texels, period=2),
             kept(words[2, :count, 1], first=4 * texels + 1, period=2),
             kept(words[2, count:], first=2 * (2 * texels + count)),
-            kept(words[3:], first=6 * texels),
+            lit(exact[:, 11:15], first=6 * texels),
+            kept(words[3, count:], first=2 * (3 * texels + count)),
+            kept(words[4:], first=8 * texels),
         ),
     )

@@ -4,7 +4,19 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from bent_cases import BENT_BOUND, TURNED_BOUND, random_targets, random_texture, triangles
+from bent_cases import (
+    LIT_BOUND,
+    MEAN_BOUND,
+    TURNED_BOUND,
+    WEIGHED_BOUND,
+    random_bends,
+    random_light,
+    random_places,
+    random_stars,
+    random_targets,
+    random_texture,
+    triangles,
+)
 from dispatch import run
 from frame_bounds import COLOR_BOUND, OPACITY_BOUND, POSITION_BOUND
 from frame_errors import PosedFrame
@@ -17,7 +29,7 @@ from mua.arrays import Array
 from mua.asset import write
 from mua.asset.tensors import Storage
 from mua.gpu import Device
-from mua.kernels.expressions import Targets, bend_texels, bend_triangles
+from mua.kernels.expressions import Targets, bend_texels, bend_triangles, bend_vertices, brighten_texels
 from mua.player.buffers import AvatarBuffers
 from mua.player.channels import EXPRESSED
 from mua.player.frame import AvatarFrame
@@ -29,7 +41,7 @@ HALF = 2.0**-MANTISSA_BITS  # of a half float, rounded either way
 
 
 def summed(device: Device, targets: Targets, weights: Array, mesh: Array) -> tuple[Array, Array]:
-    """How far the vertices moved and where they are then, by the kernel; beyond the last entry stands a vertex more."""
+    """Moves and gains of the vertices, and where they are then, by the kernel; past the last entry stands one more."""
     beyond = np.setdiff1d(np.arange(len(mesh)), targets.vertices)[:1]
     found = run(
         device,
@@ -40,9 +52,9 @@ def summed(device: Device, targets: Targets, weights: Array, mesh: Array) -> tup
             "vertices": np.append(targets.vertices, beyond).astype(np.uint32),
             "starts": np.append(targets.starts, targets.starts[-1]).astype(np.uint32),
             "expressions": targets.expressions.astype(np.uint32),
-            "offsets": targets.offsets,
+            "changes": targets.changes,
             "weights": weights,
-            "moved": np.full_like(mesh, UNTOUCHED),
+            "moved": np.full((len(mesh), 4), UNTOUCHED),
             "mesh": mesh,
         },
         vertex_count=len(targets.vertices),
@@ -57,12 +69,12 @@ def test_vertices_move_by_the_sum_of_what_moves_them(device: Device, count: int)
     targets, weights = random_targets(rng, vertices, expressions), rng.random(expressions, dtype=np.float32)
     mesh = rng.uniform(-1, 1, (2 * count, 3)).astype(np.float32)
     moved, found = summed(device, targets, weights, mesh)
-    expected = np.zeros((2 * count, 3))
-    entries = weights[targets.expressions, None].astype(float) * targets.offsets
+    expected = np.zeros((2 * count, 4))
+    entries = weights[targets.expressions, None].astype(float) * targets.changes
     np.add.at(expected, np.repeat(targets.vertices, np.diff(targets.starts)), entries)
-    bound = 2 * expressions * ULP * np.abs(targets.offsets).max() * expressions
+    bound = 2 * expressions * ULP * np.abs(targets.changes).max() * expressions
     np.testing.assert_allclose(moved[vertices], expected[vertices], rtol=0, atol=bound)
-    np.testing.assert_allclose(found, mesh + expected, rtol=0, atol=bound + 2 * ULP)
+    np.testing.assert_allclose(found, mesh + expected[:, :3], rtol=0, atol=bound + 2 * ULP)
     others = np.setdiff1d(np.arange(2 * count), vertices)
     assert (moved[others] == UNTOUCHED).all()
     np.testing.assert_array_equal(found[others], mesh[others])
@@ -79,41 +91,65 @@ def test_weights_of_0_move_nothing_at_all(device: Device) -> None:
 
 @pytest.mark.parametrize("count", COUNTS)
 def test_triangles_in_reach_bend(device: Device, count: int) -> None:
-    """What has no area or does not move has no turn."""
+    """What has no area does not count, and what does not move does not bend."""
     rng = np.random.default_rng(count)
     bent = triangles(rng, count)
-    at = rng.permutation(len(bent.faces))[: count + 2]
+    shown, vertices = rng.permutation(len(bent.faces))[: count + 2], rng.permutation(len(bent.mesh))
+    places = np.argsort(vertices)[bent.faces]
     found = run(
         device,
         FILE,
         "BendTriangles",
-        (-(-len(at) // EXPRESSED), 1, 1),
+        (-(-len(shown) // EXPRESSED), 1, 1),
         {
-            **{"triangles": at.astype(np.uint32), "faces": bent.faces},
-            **{"moved": bent.moved, "mesh": bent.mesh + bent.moved, "bends": np.full((len(at) + 3, 4, 4), UNTOUCHED)},
+            **{"vertices": vertices.astype(np.uint32), "corners": places[shown].astype(np.uint32)},
+            **{"moved": np.pad(bent.moved, ((0, 0), (0, 1))), "mesh": bent.mesh + bent.moved},
+            "triangle_bends": np.full((len(shown) + 3, 3, 4), UNTOUCHED),
         },
-        triangle_count=len(at),
-    )["bends"]
-    turns, maps = bend_triangles(bent.mesh.astype(float), bent.moved.astype(float), bent.faces[at])
-    bends = at < bent.bending
-    assert not found[: len(at)][~bends, 0].any()
-    assert (found[len(at) :] == UNTOUCHED).all()
-    own = found[: len(at)][bends]
-    own[:, 0] *= np.sign(np.sum(own[:, 0] * turns[bends], axis=1))[:, None]  # of w near 0 either sign may come
-    np.testing.assert_allclose(own[:, 0], turns[bends], rtol=0, atol=BENT_BOUND)
-    np.testing.assert_allclose(own[:, 1:, :3].swapaxes(1, 2), maps[bends], rtol=0, atol=BENT_BOUND)
+        triangle_count=len(shown),
+    )["triangle_bends"].reshape(-1, 12)
+    expected = bend_triangles(bent.mesh.astype(float), bent.moved.astype(float), bent.faces[shown])
+    assert (found[len(shown) :] == UNTOUCHED).all()
+    own = found[: len(shown)]
+    own[:, :4] *= np.where(np.sum(own[:, :4] * expected[:, :4], axis=1) < 0, -1, 1)[:, None]  # of w near 0 either comes
+    np.testing.assert_allclose(own, expected, rtol=0, atol=WEIGHED_BOUND)
+    np.testing.assert_array_equal(own[:, 11], shown < bent.bending + 3)
+    assert not own[(shown >= bent.bending) & (shown < bent.bending + 3), :11].any()
 
 
 @pytest.mark.parametrize("count", COUNTS)
-def test_texels_bend_with_their_triangles(device: Device, count: int) -> None:
-    """Those in reach; what does not bend stays bit for bit."""
+def test_vertices_bend_as_the_triangles_about_them(device: Device, count: int) -> None:
+    """Quaternions of either sign; those about which no triangle moves do not bend."""
+    rows, starts, stars = random_stars(np.random.default_rng(count), count)
+    found = run(
+        device,
+        FILE,
+        "BendVertices",
+        (-(-count // EXPRESSED), 1, 1),
+        {
+            **{"starts": np.append(starts, starts[-1]), "stars": np.append(stars, 0).astype(np.uint32)},
+            **{"triangle_bends": rows, "vertex_bends": np.full((count + 1, 12), UNTOUCHED)},
+        },
+        vertex_count=count,
+    )["vertex_bends"].reshape(-1, 12)
+    expected = bend_vertices(rows.astype(float), starts.astype(int), stars.astype(int))
+    np.testing.assert_allclose(found[:count], expected, rtol=0, atol=MEAN_BOUND)
+    np.testing.assert_array_equal(found[:count, 10:], expected[:, 10:])
+    assert (found[count] == UNTOUCHED).all()
+
+
+@pytest.mark.parametrize("count", COUNTS)
+def test_texels_bend_and_brighten_as_their_corners(device: Device, count: int) -> None:
+    """Those in reach; what does not bend, or is not lit, stays bit for bit."""
     rng = np.random.default_rng(count)
-    bent = triangles(rng, count)
-    turns, maps = bend_triangles(bent.mesh, bent.moved, bent.faces)
-    maps[0] *= 100  # beyond MOST_STRETCH
-    place = rng.integers(0, len(bent.faces), count + 7)
+    bends, corners = random_bends(rng, 2 * count + 3, still=count + 2), rng.integers(0, 2 * count + 3, (count + 4, 3))
+    corners[0], corners[1] = 0, 2 * count + 2
+    bends[0, 4:10] *= 100  # beyond MOST_STRETCH
+    bends[1, :11] = 0  # it does not count
+    place = rng.integers(0, len(corners), count + 7)
     texture, at = random_texture(rng, len(place)), np.sort(rng.permutation(len(place))[:count])
-    bends = np.concatenate([turns[:, None], np.pad(maps.swapaxes(1, 2), ((0, 0), (0, 0), (0, 1)))], axis=1)
+    words, barycentrics = random_places(rng, len(place))
+    vertices, light = random_light(rng, len(bends), dark=count)
     halves = texture.astype(np.float16).reshape(-1, 6, 4).swapaxes(0, 1)
     found = run(
         device,
@@ -122,18 +158,29 @@ def test_texels_bend_with_their_triangles(device: Device, count: int) -> None:
         (-(-len(at) // EXPRESSED), 1, 1),
         {
             "reached": np.stack([at, place[at]], axis=1).astype(np.uint32),
-            **{"bends": bends, "texel_channels": np.ascontiguousarray(halves).view(np.uint32)},
+            **{"texels": words, "corners": corners.astype(np.uint32), "vertex_bends": bends},
+            **{"vertices": vertices, "moved": light},
+            "texel_channels": np.ascontiguousarray(halves).view(np.uint32),
         },
         texel_count=len(at),
         splat_count=len(place),
     )["texel_channels"].view(np.float16)
     own = found.reshape(6, -1, 4).swapaxes(0, 1).reshape(-1, 24).astype(float)
-    exact = bend_texels(turns.astype(float), maps.astype(float), place, texture.astype(float))
+    exact = bend_texels(bends.astype(float), corners[place], barycentrics, texture.astype(float))
     changed = np.zeros(len(place), bool)
-    changed[at] = (turns[place[at]] != 0).any(axis=1)
-    np.testing.assert_array_equal(own[~changed], texture[~changed])
-    np.testing.assert_array_equal(own[:, 10:], texture[:, 10:])
+    changed[at] = bends[corners[place[at]], 11].any(axis=1) & bends[corners[place[at]], 10].any(axis=1)
+    np.testing.assert_array_equal(own[~changed, :10], texture[~changed, :10])
+    np.testing.assert_array_equal(
+        np.delete(own[:, 10:], [2, 3, 4], axis=1), np.delete(texture[:, 10:], [2, 3, 4], axis=1)
+    )
+    gains = light[vertices, 3].astype(float)
+    lit = brighten_texels(gains, corners[place], barycentrics, np.delete(texture, 11, axis=1).astype(float))[:, 11:14]
+    assert (np.abs(own[at, 12:15] - lit[at]) <= LIT_BOUND + HALF * (1 + np.abs(lit[at]))).all()
+    unlit = np.ones(len(place), bool)
+    unlit[at] = ~gains[corners[place[at]]].any(axis=1)
+    np.testing.assert_array_equal(own[unlit, 12:15], texture[unlit, 12:15])
     expected = exact[changed, :10]
+    expected[:, 3:7] *= np.where(np.sum(expected[:, 3:7] * own[changed, 3:7], axis=1) < 0, -1, 1)[:, None]
     assert (np.abs(own[changed, :10] - expected) <= TURNED_BOUND + HALF * (1 + np.abs(expected))).all()
 
 

@@ -16,9 +16,20 @@ def test_expressions_come_back(tmp_path: Path) -> None:
     assert found.expressions
     assert rig.expressions
     assert found.expressions.names == rig.expressions.names
-    for name in ("starts", "vertices", "offsets"):
+    for name in ("starts", "vertices", "offsets", "gains"):
         np.testing.assert_array_equal(getattr(found.expressions, name), getattr(rig.expressions, name))
     assert rig_hash(found) == rig_hash(rig)
+
+
+def test_expressions_without_light_have_none_and_another_hash(tmp_path: Path) -> None:
+    rig = with_expressions(synthetic_avatar()).rig
+    assert rig.expressions
+    unlit = replace(rig, expressions=replace(rig.expressions, gains=None))
+    write_rig(tmp_path / "rig.npz", unlit)
+    found = read_rig(tmp_path / "rig.npz").expressions
+    assert found
+    assert found.gains is None
+    assert rig_hash(unlit) != rig_hash(rig)
 
 
 def test_a_rig_without_expressions_has_none_and_another_hash(tmp_path: Path) -> None:

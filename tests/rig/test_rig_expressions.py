@@ -28,7 +28,7 @@ def expressions(targets: Array) -> Expressions:
     expression, vertices = np.nonzero(targets.any(axis=2))
     starts = np.searchsorted(expression, np.arange(4)).astype(np.int32)
     offsets = targets[expression, vertices]
-    return Expressions(("jawOpen", "neutral", "blink"), starts, vertices.astype(np.int32), offsets)
+    return Expressions(("jawOpen", "neutral", "blink"), starts, vertices.astype(np.int32), offsets, offsets[:, 0] / 2)
 
 
 def test_displacement_is_the_weighted_sum_of_targets(expressions: Expressions, targets: Array) -> None:
@@ -36,6 +36,8 @@ def test_displacement_is_the_weighted_sum_of_targets(expressions: Expressions, t
     expected = np.einsum("e,evc->vc", weights, targets)
     assert np.allclose(expressions.displacement(weights, vertices=VERTICES), expected, atol=1e-6)
     assert not expressions.displacement(np.zeros(3), vertices=VERTICES).any()
+    assert np.allclose(expressions.brightening(weights, vertices=VERTICES), expected[:, 0] / 2, atol=1e-6)
+    assert not replace(expressions, gains=None).brightening(weights, vertices=VERTICES).any()
 
 
 def test_part_of_the_mesh_moves_as_in_the_whole(expressions: Expressions, targets: Array) -> None:
@@ -44,6 +46,8 @@ def test_part_of_the_mesh_moves_as_in_the_whole(expressions: Expressions, target
     weights = np.array([1, 0.5, 0.125])
     whole = expressions.displacement(weights, vertices=VERTICES)
     assert np.array_equal(part.displacement(weights, vertices=25), whole[kept])
+    whole = expressions.brightening(weights, vertices=VERTICES)
+    assert np.array_equal(part.brightening(weights, vertices=25), whole[kept])
     for first, last in zip(part.starts[:-1], part.starts[1:], strict=True):
         assert (np.diff(part.vertices[first:last]) > 0).all()
 

@@ -7,6 +7,7 @@ import pytest
 from tube import still, swing, tube
 
 from mua import rotation
+from mua.avatar.decode import express
 from mua.baking.plan import split
 from mua.channels import ATTRIBUTES, CHANNELS
 from mua.kernels.dq_skinning import blend_texels, blend_vertices, skin_splats
@@ -16,6 +17,7 @@ from mua.recording import PlannedClip
 from mua.recording.record import played
 from mua.rig.bones import fit_bones
 from mua.rig.character import Character
+from mua.rig.expressions import Expressions
 from mua.rig.rig import Rig
 from mua.teacher import TeacherFrame
 from mua.teachers.simulated.chords import SEEN
@@ -140,6 +142,28 @@ def at_vertices(looseness: float) -> tuple[Character, SimulatedTeacher, np.ndarr
     vertex = rig.mesh.faces[rig.texels.triangles[at_vertex], corner]
     assert len(np.unique(vertex)) == len(rig.mesh.vertices)
     return character, teacher, at_vertex, vertex
+
+
+def test_expressions_light_an_avatar_as_they_light_the_figure() -> None:
+    """The upper half of a tube turns from the sky as it flares: its colours, and none beyond, follow."""
+    character = tube(rings=9, sides=12, looseness=0.0)
+    mesh = character.mesh.vertices
+    height = mesh[:, 1] - np.median(mesh[:, 1])
+    upper = np.flatnonzero(height > 1e-6).astype(np.int32)
+    offsets = (4 * height[upper, None] * mesh[upper] * [1, 0, 1]).astype(np.float32)
+    flare = Expressions(("flare",), np.array([0, len(upper)], np.int32), upper, offsets)
+    teacher = SimulatedTeacher(replace(character, expressions=flare), texels=SIZE)
+    pose = character.skeleton.bind_pose
+    rest, lit = teacher.frame(pose), teacher.frame(replace(pose, expressions=np.ones(1)))
+    found = express(teacher.rig, rest.mesh, texture=rest.texture, weights=np.ones(1))[1]
+    rig = teacher.rig
+    assert rig.expressions is not None
+    corners = np.isin(rig.mesh.faces[rig.texels.triangles], rig.expressions.vertices)
+    at = np.sum(corners * rig.texels.barycentrics, axis=1) > 0.99
+    before, after = (np.abs(texture[at, 11:14] - lit.texture[at, 11:14]).mean() for texture in (rest.texture, found))
+    assert after < before / 3
+    far = ~corners.any(axis=1)
+    np.testing.assert_array_equal(found[far, 11:14], rest.texture[far, 11:14])
 
 
 @pytest.mark.usefixtures("unsunk")

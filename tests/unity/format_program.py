@@ -79,6 +79,8 @@ def values(tree: Tree) -> dict[str, tuple[str, bytes]]:
     }
     if rig.expressions:
         floats["expressions.offsets"] = rig.expressions.offsets
+        if rig.expressions.gains is not None:
+            floats["expressions.gains"] = rig.expressions.gains
     clips: dict[str, Any] = {f"clips.{i}.rate": clip.rate for i, clip in enumerate(avatar.clips)}
     for i, clip in enumerate(tree["clips"]):  # as stored: rotations not yet of unit length
         clips |= {f"clips.{i}.{key}": stored(clip[key], key) for key in CLIP_TENSORS if key in clip}

@@ -73,12 +73,14 @@ def assert_levels_alike(csharp: CSharp, program: Path, path: Path, avatar: Avata
     printed = iter(csharp.run(program, path).splitlines())
     assert float(next(printed).split()[1]) == pytest.approx(texel_length(avatar), rel=1e-12)
     held = avatar.rig.expressions or NO_EXPRESSIONS
-    targets = by_vertex(held.starts, held.vertices, held.offsets)
-    for name in ("vertices", "starts", "expressions", "offsets"):
+    targets = by_vertex(held.starts, held.vertices, held.changes)
+    for name in ("vertices", "starts", "expressions", "changes"):
         values = getattr(targets, name)
-        assert_uploaded(printed, values.astype("<f4" if name == "offsets" else "<u4"))
+        assert_uploaded(printed, values.astype("<f4" if name == "changes" else "<u4"))
     reach = partial(reach_of, targets.vertices, avatar.rig.mesh.faces)
-    assert_uploaded(printed, reach(avatar.rig.texels.triangles).triangles)
+    reached = reach(avatar.rig.texels.triangles)
+    for values in (reached.corners, reached.vertices, reached.starts, reached.stars):
+        assert_uploaded(printed, values)
     for number in range(coarsest(avatar) + 1):
         level = avatar.at_level(number)
         texels = level.rig.texels

@@ -141,9 +141,12 @@ def moves_alike(path: Path) -> bool:
         return False
     texture = np.random.default_rng(0).normal(size=(len(rig.texels.texels), 23))
     found, bent = express(rig, mesh, texture=texture, weights=weights)
-    moved = expressions.moved(record, Pose(mesh, mesh, weights))
-    corners = record.template.faces[record.texels.triangles[::STEP]]
-    expected = expressions.bend(texture[::STEP], corners, record.coarse.mean, moved)
+    pose = Pose(mesh, mesh, weights)
+    moved = expressions.moved(record, pose)
+    faces, barycentrics = record.template.faces, rig.texels.barycentrics[::STEP].astype(float)
+    corners = faces[record.texels.triangles[::STEP]]
+    expected = expressions.bend(texture[::STEP], corners, barycentrics, faces, record.coarse.mean, moved)
+    expected = expressions.light(expected, corners, barycentrics, expressions.brightened(record, pose))
     scale = max(np.abs(mesh).max(), np.abs(moved).max())
     np.testing.assert_allclose(found, record.coarse.mean + moved, rtol=0, atol=SAME * scale)
     channels = np.delete(np.arange(23), slice(3, 7))  # quaternions have either sign

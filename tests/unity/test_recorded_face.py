@@ -22,7 +22,7 @@ from mua.kernels.splat_project import HIDDEN
 
 PLACE = "0 0 0 0 0 0 1 1"
 LEAST_SEEN = 0.75  # of the splats
-EXPRESSIONS = ["SumTargets", "BendTriangles", "BendTexels"]
+EXPRESSIONS = ["SumTargets", "BendTriangles", "BendVertices", "BendTexels"]
 
 
 @pytest.mark.parametrize("storage", ["f32", "i8"])

@@ -9,9 +9,9 @@ is that of the frame without them. PSNR is over what both cover of the face's bo
 expression changes in the teacher's image; each is held against the body's figure over the same pixels of the same
 frames.
 
-Light and shape are told apart by a second teacher, whose surface moves while its colours stay as without expressions.
-Beside the student it is compared with itself at rest, bent as an avatar bends it, so that nothing learnt plays a part;
-both also with offsets that do not turn with their triangle.
+Light and shape are told apart by a second teacher, whose surface moves while its colours stay as without expressions,
+and by a student of which the same is true. Beside it that teacher is compared with itself at rest, bent as an avatar
+bends it, so that nothing learnt plays a part; both also with offsets that do not turn with their triangle.
 """
 
 import argparse
@@ -64,10 +64,10 @@ SYLLABLE = 0.1  # seconds from a viseme to the next
 BLINK, BETWEEN = 0.2, 0.8  # seconds that a blink takes, and from one to the next
 SPEECH = (*(f"viseme_{name}" for name in dict.fromkeys(SENTENCE)), "jawOpen", "eyeBlinkLeft", "eyeBlinkRight")
 LIT, UNLIT = "teacher", "teacher in the light at rest"
-STUDENT, RELIT, BENT = "student", "student, relit", "bent teacher"
+RELIT, STUDENT, BENT = "student", "student in the light at rest", "bent teacher"
 FIXED = ", offsets not turned"
 WAYS = {  # what is compared, and with which teacher
-    RELIT: (STUDENT, LIT),
+    RELIT: (RELIT, LIT),
     STUDENT: (STUDENT, UNLIT),
     STUDENT + FIXED: (STUDENT + FIXED, UNLIT),
     BENT: (BENT, UNLIT),
@@ -173,7 +173,9 @@ class FaceStudio:
         shown = {LIT: teacher, UNLIT: with_channels(teacher, frame.teacher, APPEARANCE)}
         for name, rest in {STUDENT: frame.student, BENT: frame.teacher}.items():
             mesh, texture = express(self._rig, rest.mesh, texture=rest.texture, weights=weights)
-            shown[name] = Unposed(mesh, texture, 0.0)
+            shown[name] = with_channels(Unposed(mesh, texture, 0.0), rest, APPEARANCE)
+            if name == STUDENT:
+                shown[RELIT] = Unposed(mesh, texture, 0.0)
             shown[name + FIXED] = with_channels(shown[name], rest, ATTRIBUTES["offset"])
         return {name: self.draw(unposed, frame.pose, frame.camera) for name, unposed in shown.items()}
 
@@ -190,13 +192,15 @@ class FaceStudio:
         )
 
     def strip(self, name: str, frame: Frame, weights: Array) -> Array:
-        """Both teachers, the student and what sets them apart [h, 5 w, 3]."""
+        """The teacher, the student and what sets them apart, also in the light at rest [h, 5 w, 3]."""
         images = self.images(frame, weights)
         background = background_for([images[LIT]])
-        lit, truth, student = (over(images[name], background) for name in (LIT, UNLIT, STUDENT))
-        titles = (f"{name}: {LIT}", UNLIT, STUDENT, "difference in light", "difference in shape")
-        differences = difference(lit, truth), difference(truth, student)
-        shown = [to_bytes(image) for image in (lit, truth, student, *differences)]
+        truth, shape, student = (over(images[name], background) for name in (LIT, UNLIT, RELIT))
+        still = over(images[STUDENT], background)
+        titles = (f"{name}: {LIT}", RELIT, "difference", STUDENT, "difference in shape")
+        shown = [
+            to_bytes(image) for image in (truth, student, difference(truth, student), still, difference(shape, still))
+        ]
         return np.vstack([caption(titles, self._size), np.hstack(shown)])
 
     def _camera(self, pose: Pose, teacher: Unposed) -> Camera:

@@ -25,8 +25,9 @@ namespace Mua
         private readonly GraphicsBuffer[] activations = new GraphicsBuffer[2];
         private readonly GraphicsBuffer[] textures = new GraphicsBuffer[2]; // finest detailed, its ll
         private GraphicsBuffer details;
-        private GraphicsBuffer moved; // [V, 3] 0 where no expression moves a vertex
-        private GraphicsBuffer bends; // [4 T]
+        private GraphicsBuffer moved; // [V] and how much brighter colours become; 0 where no expression moves a vertex
+        private GraphicsBuffer triangleBends; // [3 T]
+        private GraphicsBuffer vertexBends; // [3 B]
 
         /// <summary>
         /// InvalidOperationException where a kernel is missing or a buffer is too large for the device.
@@ -86,10 +87,11 @@ namespace Mua
             layers = Math.Max(layers, Math.Max(Widest(avatar.Geometry.Mlp), Widest(avatar.Appearance.Mlp)));
             long bands = Math.Max(LargestBand(avatar.Geometry), LargestBand(avatar.Appearance));
             details = buffers.Structured("details", bands, sizeof(uint));
-            var still = new float[avatar.Expressions.VertexCount == 0 ? 1 : 3 * avatar.VertexCount];
-            moved = buffers.Structured("moved", still.Length, sizeof(float));
+            var still = new float[avatar.Expressions.VertexCount == 0 ? 4 : 4 * avatar.VertexCount];
+            moved = buffers.Structured("moved", still.Length / 4, 4 * sizeof(float));
             moved.SetData(still);
-            bends = buffers.Structured("bends", 4L * avatar.Expressions.TriangleCount, 4 * sizeof(float));
+            triangleBends = buffers.Structured("triangle_bends", 3L * avatar.Expressions.TriangleCount, 4 * sizeof(float));
+            vertexBends = buffers.Structured("vertex_bends", 3L * avatar.Expressions.BentCount, 4 * sizeof(float));
             for (int i = 0; i < 2; i++)
             {
                 activations[i] = buffers.Structured("activations", layers, sizeof(float));
@@ -124,8 +126,8 @@ namespace Mua
         {
             commands.BeginSample(AvatarStages.Texture);
             expressions.Sum(commands, avatar.Expressions, channels.Weights, moved, channels.Mesh);
-            expressions.Bend(commands, avatar, moved, channels.Mesh, bends);
-            expressions.Bend(commands, channels.Level, bends, channels.TexelChannels);
+            expressions.Bend(commands, avatar.Expressions, moved, channels.Mesh, triangleBends, vertexBends);
+            expressions.BendTexels(commands, avatar.Expressions, channels.Level, moved, vertexBends, channels.TexelChannels);
             commands.EndSample(AvatarStages.Texture);
         }
 

@@ -3,12 +3,12 @@ using UnityEngine;
 
 namespace Mua
 {
-    /// <summary>What moves each vertex that any expression moves, on the device (python/mua/player/buffers.py).</summary>
+    /// <summary>What moves each vertex that any expression moves, and what it bends, on the device (python/mua/player/buffers.py).</summary>
     internal sealed class ExpressionBuffers
     {
         private const string Field = "expressions.vertices";
 
-        private readonly Upload vertices, starts, expressions, offsets, triangles;
+        private readonly Upload vertices, starts, expressions, changes, corners, bentVertices, starStarts, stars;
 
         /// <param name="targets">What they hold.</param>
         /// <param name="add">Takes what is to be uploaded.</param>
@@ -17,15 +17,21 @@ namespace Mua
             vertices = add(new Upload(Field, targets.Vertices, sizeof(int)));
             starts = add(new Upload("expressions.starts", targets.Starts, sizeof(int)));
             expressions = add(new Upload(Field, targets.Expressions, sizeof(int)));
-            offsets = add(new Upload("expressions.offsets", targets.Offsets, sizeof(float)));
-            triangles = add(new Upload(Field, targets.Triangles, sizeof(int)));
+            changes = add(new Upload("expressions.offsets", targets.Changes, 4 * sizeof(float)));
+            corners = add(new Upload(Field, targets.Corners, sizeof(int)));
+            bentVertices = add(new Upload(Field, targets.BentVertices, sizeof(int)));
+            starStarts = add(new Upload(Field, targets.StarStarts, sizeof(int)));
+            stars = add(new Upload(Field, targets.Stars, sizeof(int)));
         }
 
         /// <summary>M.</summary>
         public int VertexCount => vertices.Count;
 
         /// <summary>T.</summary>
-        public int TriangleCount => triangles.Count;
+        public int TriangleCount => corners.Count / 3;
+
+        /// <summary>B.</summary>
+        public int BentCount => bentVertices.Count;
 
         /// <summary>[M]</summary>
         public GraphicsBuffer Vertices => vertices.Buffer;
@@ -36,10 +42,19 @@ namespace Mua
         /// <summary>[P] of each entry.</summary>
         public GraphicsBuffer Expressions => expressions.Buffer;
 
-        /// <summary>[P, 3] metres.</summary>
-        public GraphicsBuffer Offsets => offsets.Buffer;
+        /// <summary>[P] offset in metres, gain.</summary>
+        public GraphicsBuffer Changes => changes.Buffer;
 
-        /// <summary>[T] in reach of the vertices.</summary>
-        public GraphicsBuffer Triangles => triangles.Buffer;
+        /// <summary>[T, 3] of the triangles in reach, places among BentVertices.</summary>
+        public GraphicsBuffer Corners => corners.Buffer;
+
+        /// <summary>[B] of the template.</summary>
+        public GraphicsBuffer BentVertices => bentVertices.Buffer;
+
+        /// <summary>[B + 1] into Stars.</summary>
+        public GraphicsBuffer StarStarts => starStarts.Buffer;
+
+        /// <summary>[3 T] vertex by vertex, the places of the triangles about it.</summary>
+        public GraphicsBuffer Stars => stars.Buffer;
     }
 }

@@ -4,12 +4,12 @@ using Mua.Format;
 namespace Mua
 {
     /// <summary>
-    /// Expressions as the kernels read them: what moves each vertex, and the triangles that these bend. It may be made on any
-    /// thread. Reference: python/mua/kernels/expressions.py.
+    /// Expressions as the kernels read them: what moves each vertex, and the triangles about these and about their neighbours,
+    /// which they bend. It may be made on any thread. Reference: python/mua/kernels/expressions.py.
     /// </summary>
     internal sealed class ExpressionTargets
     {
-        private readonly int[] places; // [F] among Triangles; -1 for those out of reach
+        private readonly int[] places; // [F] among the triangles in reach; -1 for those out of it
 
         /// <summary>Those of a file; empty where it has none.</summary>
         public ExpressionTargets(AvatarFile avatar)
@@ -20,9 +20,18 @@ namespace Mua
             Vertices = Moved(firsts);
             Starts = Append(Array.ConvertAll(Vertices, vertex => firsts[vertex]), count);
             Expressions = new int[count];
-            Offsets = new float[3 * count];
+            Changes = new float[4 * count];
             places = new int[avatar.Template.Faces.Shape[0]];
-            Triangles = Reached(avatar.Template.Faces.Integers, firsts);
+            ReadOnlySpan<int> faces = avatar.Template.Faces.Integers;
+            bool[] moves = new bool[firsts.Length - 1];
+            foreach (int vertex in Vertices)
+            {
+                moves[vertex] = true;
+            }
+            Corners = Reached(faces, Beside(faces, moves));
+            BentVertices = Place(Corners, moves.Length);
+            StarStarts = new int[BentVertices.Length + 1];
+            Stars = Collect(Corners, StarStarts);
             if (held != null)
             {
                 Fill(held, firsts);
@@ -38,11 +47,20 @@ namespace Mua
         /// <summary>[P] of each entry, ascending for a vertex.</summary>
         public int[] Expressions { get; }
 
-        /// <summary>[P, 3] metres.</summary>
-        public float[] Offsets { get; }
+        /// <summary>[P, 4] offset in metres, gain.</summary>
+        public float[] Changes { get; }
 
-        /// <summary>[T] into the faces, ascending: those with a corner among the vertices.</summary>
-        public int[] Triangles { get; }
+        /// <summary>[T, 3] of the triangles in reach, places among BentVertices.</summary>
+        public int[] Corners { get; }
+
+        /// <summary>[B] of the template, ascending: all corners of these triangles.</summary>
+        public int[] BentVertices { get; }
+
+        /// <summary>[B + 1] into Stars.</summary>
+        public int[] StarStarts { get; }
+
+        /// <summary>[3 T] vertex by vertex, the places of the triangles about it.</summary>
+        public int[] Stars { get; }
 
         /// <summary>[K, 2] of a level: texels on these triangles, and their triangle's place among them.</summary>
         public int[] Reached(DetailLevel level)
@@ -106,26 +124,83 @@ namespace Mua
             return values;
         }
 
-        /// <summary>The faces with a corner that has entries, whose places it notes.</summary>
-        private int[] Reached(ReadOnlySpan<int> faces, int[] firsts)
+        /// <summary>Which vertices have a neighbour that moves, or do so themselves.</summary>
+        private static bool[] Beside(ReadOnlySpan<int> faces, bool[] moves)
         {
-            var reached = new int[places.Length];
+            var beside = new bool[moves.Length];
+            for (int face = 0; face < faces.Length; face += 3)
+            {
+                if (moves[faces[face]] || moves[faces[face + 1]] || moves[faces[face + 2]])
+                {
+                    beside[faces[face]] = beside[faces[face + 1]] = beside[faces[face + 2]] = true;
+                }
+            }
+            return beside;
+        }
+
+        /// <summary>The corners of the faces that have one of these vertices, whose places it notes.</summary>
+        private int[] Reached(ReadOnlySpan<int> faces, bool[] beside)
+        {
+            var reached = new int[faces.Length];
             int count = 0;
             for (int face = 0; face < places.Length; face++)
             {
-                bool isHeld = false;
-                foreach (int vertex in faces.Slice(3 * face, 3))
-                {
-                    isHeld |= firsts[vertex + 1] > firsts[vertex];
-                }
+                ReadOnlySpan<int> own = faces.Slice(3 * face, 3);
+                bool isHeld = beside[own[0]] || beside[own[1]] || beside[own[2]];
                 places[face] = isHeld ? count : -1;
                 if (isHeld)
                 {
-                    reached[count++] = face;
+                    own.CopyTo(reached.AsSpan(3 * count++));
                 }
             }
-            Array.Resize(ref reached, count);
+            Array.Resize(ref reached, 3 * count);
             return reached;
+        }
+
+        /// <summary>The vertices that corners are, whose places among them take their stead.</summary>
+        private static int[] Place(int[] corners, int vertices)
+        {
+            var place = new int[vertices];
+            foreach (int vertex in corners)
+            {
+                place[vertex] = 1;
+            }
+            var held = new int[vertices];
+            int count = 0;
+            for (int vertex = 0; vertex < vertices; vertex++)
+            {
+                if (place[vertex] > 0)
+                {
+                    place[vertex] = count;
+                    held[count++] = vertex;
+                }
+            }
+            for (int i = 0; i < corners.Length; i++)
+            {
+                corners[i] = place[corners[i]];
+            }
+            Array.Resize(ref held, count);
+            return held;
+        }
+
+        /// <summary>The triangles about each vertex, ascending.</summary>
+        private static int[] Collect(int[] corners, int[] starts)
+        {
+            foreach (int corner in corners)
+            {
+                starts[corner + 1]++;
+            }
+            for (int vertex = 1; vertex < starts.Length; vertex++)
+            {
+                starts[vertex] += starts[vertex - 1];
+            }
+            var next = (int[])starts.Clone();
+            var stars = new int[corners.Length];
+            for (int i = 0; i < corners.Length; i++)
+            {
+                stars[next[corners[i]]++] = i / 3;
+            }
+            return stars;
         }
 
         private void Fill(Format.Expressions held, int[] next)
@@ -139,8 +214,9 @@ namespace Mua
                     Expressions[at] = expression;
                     for (int axis = 0; axis < 3; axis++)
                     {
-                        Offsets[3 * at + axis] = held.Offsets.Read(3 * entry + axis);
+                        Changes[4 * at + axis] = held.Offsets.Read(3 * entry + axis);
                     }
+                    Changes[4 * at + 3] = held.Gains == null ? 0 : held.Gains.Read(entry);
                 }
             }
         }

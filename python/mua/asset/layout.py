@@ -117,6 +117,7 @@ TABLES = {
         Field("starts", "Tensor", required=True),
         Field("vertices", "Tensor", required=True),
         Field("offsets", "Tensor", required=True),
+        Field("gains", "Tensor"),
     ),
     "Avatar": (
         Field("version_major", "ushort"),

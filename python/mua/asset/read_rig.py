@@ -161,4 +161,5 @@ def with_expressions(rig: Rig, tree: Tree) -> Rig:
     if not np.isin(falls, starts).all():
         refuse("expressions.vertices", "vertices must ascend within an expression")
     offsets = reals(table["offsets"], "expressions.offsets", (len(moved), 3))
-    return replace(rig, expressions=Expressions(names, starts, moved, offsets))
+    gains = reals(table["gains"], "expressions.gains", (len(moved),)) if "gains" in table else None
+    return replace(rig, expressions=Expressions(names, starts, moved, offsets, gains))

@@ -21,6 +21,7 @@ from mua.rig.expressions import Expressions
 # Steps of the static offset, measured in docs/research/storage.md; that of an offset is of the figure's height.
 STEPS = {"offset": 2.0**-16, "rotation": 2.0**-8, "scale": 2.0**-7, "opacity": 2.0**-6, "SH": 2.0**-8}
 STATIC, LL, DETAILS, WEIGHTS = 0.8, 0.8, 0.4, 0.4  # times the step that follows
+GAIN = 2.0**-7  # of a colour
 FIGURE = 400  # pixels along a figure: errors of texels that are smaller than one average out
 POSES = 512  # random ones, by which networks are measured
 FAINT = 1 / 16  # of a layer's mean output, below which units count as if they were that large
@@ -49,7 +50,10 @@ def rounded(avatar: Avatar, rounding: float = 1.0) -> Avatar:
 
 
 def _expressions(expressions: Expressions | None, step: float) -> Expressions | None:
-    return expressions and replace(expressions, offsets=in_steps(expressions.offsets, step))
+    if expressions is None:
+        return None
+    gains = None if expressions.gains is None else in_steps(expressions.gains, GAIN)
+    return replace(expressions, offsets=in_steps(expressions.offsets, step), gains=gains)
 
 
 def channel_steps(height: float) -> Array:

@@ -127,12 +127,14 @@ def _expressions(expressions: Expressions | None, element: Element) -> Tree:
     """Absent where there are none."""
     if expressions is None or not len(expressions):
         return {}
-    table = {
+    table: Tree = {
         "names": list(expressions.names),
         "starts": pack_indices(expressions.starts),
         "vertices": pack_indices(expressions.vertices),
         "offsets": pack(expressions.offsets, _half(element)),
     }
+    if expressions.gains is not None and expressions.gains.any():
+        table["gains"] = pack(expressions.gains, _half(element))
     return {"expressions": table}
 
 

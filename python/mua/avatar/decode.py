@@ -11,7 +11,7 @@ from mua.avatar.model import Branch, Mlp, Model, Wavelet
 from mua.channels import APPEARANCE
 from mua.kernels.blend_subbands import blend_detail, blend_ll
 from mua.kernels.dq_skinning import blend_texels, blend_vertices, skin_splats
-from mua.kernels.expressions import bend_texels, bend_triangles
+from mua.kernels.expressions import bend_texels, bend_triangles, bend_vertices, brighten_texels, stars_of
 from mua.kernels.inverse_dwt import add_static, halve, inverse_dwt
 from mua.kernels.mlp_matmul import mlp_matmul
 from mua.pose.clip import Clip
@@ -163,8 +163,14 @@ def express(
     if rig.expressions is None or weights is None or not weights.any():
         return canonical, texture
     moved = rig.expressions.displacement(weights.astype(canonical.dtype), vertices=len(canonical))
-    turns, maps = bend_triangles(canonical, moved, rig.mesh.faces)
-    return canonical + moved, bend_texels(turns, maps, rig.texels.triangles, texture)
+    faces, texels = rig.mesh.faces, rig.texels
+    starts, stars = stars_of(faces, len(canonical))
+    bends = bend_vertices(bend_triangles(canonical, moved, faces), starts, stars)
+    barycentrics = texels.barycentrics.astype(canonical.dtype, copy=False)
+    corners = faces[texels.triangles]
+    gains = rig.expressions.brightening(weights.astype(canonical.dtype), vertices=len(canonical))
+    texture = brighten_texels(gains, corners, barycentrics, bend_texels(bends, corners, barycentrics, texture))
+    return canonical + moved, texture
 
 
 def pose_splats(

@@ -32,10 +32,11 @@ ACTIVATIONS = 3 + 4  # three exponentials, the logistic function
 SKIN = 3 * BLEND_TERM + NORMALIZE_DUAL + 18 + DUAL_TRANSFORM + QUATERNION_PRODUCT + UNIT_QUATERNION + AXES
 SKIN += ACTIVATIONS  # 18: the barycentric point and the offset
 FRAME = 6 + 6 + 3 + 5 + 6 + 6 + 3 + 9  # two edges, length, axis, shear, height's vector, its length, axis, normal
-BEND_TRIANGLE = (
-    9 + 2 * FRAME + 6 + 7 + 18 + 45 + 45 + 45
-)  # before, frames, in-plane map, its rotation; F, R, quaternion
-BEND_TEXEL = UNIT_QUATERNION + 30 + 45 + 3 * (6 + 4) + 30 + QUATERNION_PRODUCT  # axes, F of them, logarithms; offset
+# Before; frames; in-plane map, its rotation; R, P; quaternion; all times the area.
+BEND_TRIANGLE = 9 + 2 * FRAME + 6 + 7 + 3 * (6 + 8) + 10 + 6 * 5 + 45 + 12
+ADD_BEND = 8 + 12  # on which side the quaternion lies; all of a row
+BEND_TEXEL = 3 * (7 + 2 * 11) + 2 * UNIT_QUATERNION + 30 + 45 + 3 * (6 + 4)  # corners; axes, P of them, logarithms
+BEND_TEXEL += 30 + QUATERNION_PRODUCT + 3 * 3  # offset, rotation, colour
 PROJECT_EYE = (
     24 + 15 + 24 + 30 + 15 + 18 + 6 + 25 + 12 + 30 + 27
 )  # eye space, slopes, Jacobian J, A = J x axes, A A^T, axes, pixel, box; direction, turned back, SH
@@ -152,20 +153,29 @@ def scatter_digits(dispatch: Bound, share: float) -> Work:
 def sum_targets(dispatch: Bound, _: float) -> Work:
     """Entries and weights read; mesh read and written, and how far it moves written, at each vertex that may move."""
     (vertices,) = _constants(dispatch, "vertex_count")
-    moved = _bound(dispatch, "vertices", "starts", "expressions", "offsets", "weights") + 3 * 3 * FLOAT * vertices
-    return Work(moved, 2 * dispatch.sizes["offsets"] // FLOAT + 3 * vertices)
+    moved = _bound(dispatch, "vertices", "starts", "expressions", "changes", "weights") + (2 * 3 + 4) * FLOAT * vertices
+    return Work(moved, 2 * dispatch.sizes["changes"] // FLOAT + 3 * vertices)
 
 
 def bend_triangles(dispatch: Bound, _: float) -> Work:
-    """Faces and vertices, gathered and counted once; a quaternion and a map written for each triangle in reach."""
+    """Corners, and how far each went, gathered and counted once; quaternion and stretch of each triangle written."""
     (triangles,) = _constants(dispatch, "triangle_count")
-    return Work(_bound(dispatch, "triangles", "faces", "mesh", "moved", "bends"), triangles * BEND_TRIANGLE)
+    moved = _bound(dispatch, "vertices", "corners", "triangle_bends") + (3 + 4) * dispatch.sizes["vertices"]
+    return Work(moved, triangles * BEND_TRIANGLE)
+
+
+def bend_vertices(dispatch: Bound, _: float) -> Work:
+    """Triangles about each vertex in reach read, gathered and counted once; their mean written."""
+    (vertices,) = _constants(dispatch, "vertex_count")
+    moved = _bound(dispatch, "starts", "stars", "triangle_bends", "vertex_bends")
+    return Work(moved, dispatch.sizes["stars"] // UINT * ADD_BEND + vertices * 12)
 
 
 def bend_texels(dispatch: Bound, _: float) -> Work:
-    """What bent each triangle read, and 12 half floats of each texel in reach, which are written too."""
+    """Place, corners' bends, gathered, and 16 half floats of each texel in reach read; these are written too."""
     (texels,) = _constants(dispatch, "texel_count")
-    return Work(_bound(dispatch, "reached", "bends") + texels * 2 * 3 * BATCH * HALF, texels * BEND_TEXEL)
+    moved = _bound(dispatch, "reached", "corners", "vertices", "vertex_bends") + 4 * dispatch.sizes["vertices"]
+    return Work(moved + texels * (2 * UINT + 2 * 4 * BATCH * HALF), texels * BEND_TEXEL)
 
 
 Formula = Callable[[Bound, float], Work]  # work of a dispatch, given the share of the splats that some eye sees
@@ -180,6 +190,7 @@ DECODING: dict[str, Formula] = {  # once for each pose of the clip: from pose to
 EXPRESSING: dict[str, Formula] = {  # beside these, where a face moves
     "SumTargets": sum_targets,
     "BendTriangles": bend_triangles,
+    "BendVertices": bend_vertices,
     "BendTexels": bend_texels,
 }
 POSING: dict[str, Formula] = {  # in every displayed frame: from there to sorted splats

@@ -1,8 +1,9 @@
-"""Expressions after a decode: vertices of the template move, and the texels of the triangles that they bend follow.
+"""Expressions after a decode: vertices of the template move, and the texels about them follow.
 
-A triangle's deformation F takes its two edges to the bent ones and its unit normal to the bent one, so that thickness
-stays. Its polar rotation turns offset and rotation of the texel, and the texel's axes grow as F stretches them
-(schemas/README.md, section 12). Texture channels are those of mua.channels.
+A triangle's deformation F = R P takes its two edges to the bent ones and its unit normal to the bent one, so that
+thickness stays. A vertex has the mean of its triangles by area, and a texel what its corners have, so that neighbours
+bend alike: R turns the texel's offset and rotation, and its axes grow as P stretches them (schemas/README.md, section
+12). Texture channels are those of mua.channels.
 """
 
 from dataclasses import dataclass
@@ -11,9 +12,14 @@ import numpy as np
 
 from mua import rotation
 from mua.arrays import Array
+from mua.channels import APPEARANCE, SH_C0
 
-LEAST = 1e-5  # metres: a triangle with an edge or a height below it has no frame, and its texels stay as they are
+LEAST = 1e-5  # metres: a triangle with an edge or a height below it has no frame and does not count
 MOST_STRETCH = 20.0  # of an axis, and its inverse the least
+STILL = np.array([1, 0, 0, 0, 1, 1, 1, 0, 0, 0, 1, 0])  # the row of what does not bend
+CONSTANT = slice(APPEARANCE.start, APPEARANCE.start + 3)  # colours that are the same from everywhere
+MIDDLE = 0.5  # of colours, where their channels are 0
+SYMMETRIC = np.array([[4, 7, 8], [7, 5, 9], [8, 9, 6]])  # entries of P in a row
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,13 +29,13 @@ class Targets:
     vertices: Array  # [M] int32 of the mesh, ascending: all that any expression moves
     starts: Array  # [M + 1] int32
     expressions: Array  # [P] int32, ascending for a vertex
-    offsets: Array  # [P, 3] metres
+    changes: Array  # [P, 4] offset in metres, gain
 
 
 def by_vertex(
     starts: Array,  # [E + 1] int32 into the entries, expression by expression
     vertices: Array,  # [P] int32
-    offsets: Array,  # [P, 3] metres
+    changes: Array,  # [P, 4] offset in metres, gain
 ) -> Targets:
     """The entries of expressions in the order in which a thread for each vertex reads them."""
     order = np.argsort(vertices, kind="stable")
@@ -39,16 +45,20 @@ def by_vertex(
         vertices=moved.astype(np.int32),
         starts=np.concatenate([[0], np.cumsum(counts)]).astype(np.int32),
         expressions=expressions[order].astype(np.int32),
-        offsets=offsets[order],
+        changes=changes[order],
     )
 
 
 @dataclass(frozen=True, eq=False)
 class Reach:
-    """What the vertices of expressions may bend."""
+    """What the vertices of expressions may bend: triangles about them and about their neighbours."""
 
-    triangles: Array  # [T] int32 into faces, ascending: those with a corner among the vertices
-    texels: Array  # [K, 2] int32, ascending: texels on them, and their triangle's place among them
+    triangles: Array  # [T] int32 into faces, ascending
+    vertices: Array  # [B] int32 of the mesh, ascending: all of their corners
+    corners: Array  # [T, 3] int32, places among these vertices
+    starts: Array  # [B + 1] int32 into the stars
+    stars: Array  # [3 T] int32: vertex by vertex, the places of the triangles about it
+    texels: Array  # [K, 2] int32, ascending: texels on the triangles, and the places of these
 
 
 def reach_of(
@@ -56,11 +66,30 @@ def reach_of(
     faces: Array,  # [F, 3] into the vertices
     triangles: Array,  # [N] into faces
 ) -> Reach:
-    """The triangles that the vertices move, and the texels on these."""
-    held = np.any(np.isin(faces, vertices), axis=1)
+    """The triangles that have a corner beside the vertices, and the texels on these."""
+    beside = faces[np.isin(faces, vertices).any(axis=1)]
+    held = np.asarray(np.isin(faces, beside).any(axis=1))
+    bent, corners = np.unique(faces[held], return_inverse=True)
+    corners = corners.reshape(-1, 3).astype(np.int32)
     texels = np.flatnonzero(held[triangles])
     places = (np.cumsum(held) - 1)[triangles[texels]]
-    return Reach(np.flatnonzero(held).astype(np.int32), np.stack([texels, places], axis=1).astype(np.int32))
+    return Reach(
+        np.flatnonzero(held).astype(np.int32),
+        bent.astype(np.int32),
+        corners,
+        *stars_of(corners, len(bent)),
+        np.stack([texels, places], axis=1).astype(np.int32),
+    )
+
+
+def stars_of(
+    corners: Array,  # [T, 3]
+    vertices: int,  # how many there are
+) -> tuple[Array, Array]:
+    """The triangles about each vertex, ascending: starts [B + 1] int32 into a list [3 T] int32 of all."""
+    order = np.argsort(corners.ravel(), kind="stable")
+    starts = np.searchsorted(corners.ravel()[order], np.arange(vertices + 1))
+    return starts.astype(np.int32), (order // 3).astype(np.int32)
 
 
 @np.errstate(over="ignore")  # beyond any figure: what overflows is clipped to MOST_STRETCH
@@ -68,40 +97,81 @@ def bend_triangles(
     mesh: Array,  # [V, 3] canonical vertices before they move, metres
     moved: Array,  # [V, 3] how far they move
     faces: Array,  # [T, 3] into vertices
-) -> tuple[Array, Array]:
-    """Quaternions of R [T, 4] and maps F [T, 3, 3]; all 0 where nothing moves or has no frame."""
-    turns, maps = np.zeros((len(faces), 4), mesh.dtype), np.zeros((len(faces), 3, 3), mesh.dtype)
-    at = np.flatnonzero((moved != 0).any(axis=1)[faces].any(axis=1))
-    before, after = Frames.of(mesh[faces[at]]), Frames.of(mesh[faces[at]] + moved[faces[at]])
-    framed = before.holds & after.holds
-    at, before, after = at[framed], before.at(framed), after.at(framed)
-    along = after.length / before.length  # the in-plane map, (along, shear; 0, across)
-    shear = (after.shear - along * before.shear) / before.height
-    across = after.height / before.height
-    u, v, n = np.moveaxis(after.axes, -1, 0)
-    stretched = np.stack([along[:, None] * u, shear[:, None] * u + across[:, None] * v, n], axis=-1)
-    maps[at] = stretched @ before.axes.swapaxes(1, 2)
-    turns[at] = rotation.from_matrix(_turn(before.axes, after.axes, along + across, shear))
-    return turns, maps
+) -> Array:
+    """Rows [T, 12]: q(R), P as xx, yy, zz, xy, xz, yz, and 1, all of them times the area; 1 where a corner moves.
+
+    The area is the smaller one of before and after, and 0 where a triangle has no frame.
+    """
+    before, after = Frames.of(mesh[faces]), Frames.of(mesh[faces] + moved[faces])
+    framed, moves = before.holds & after.holds, (moved != 0).any(axis=1)[faces].any(axis=1)
+    area = np.minimum(before.length * before.height, after.length * after.height) / 2
+    bends = np.tile(STILL, (len(faces), 1)).astype(mesh.dtype)
+    at = np.flatnonzero(framed & moves)
+    turn, bends[at, 4:10] = _polar(before.at(at), after.at(at))
+    bends[at, 0:4] = rotation.from_matrix(turn)
+    bends *= np.where(framed, area, 0)[:, None]
+    bends[:, 11] = moves
+    return bends
+
+
+def bend_vertices(
+    bends: Array,  # [T, 12] of bend_triangles
+    starts: Array,  # [B + 1] into the stars
+    stars: Array,  # [S] into the triangles
+) -> Array:
+    """Rows [B, 12]: means of q(R) and P by area over a vertex' triangles; 1 where that is not 0; 1 where one moves."""
+    sums = np.zeros((len(starts) - 1, 12), bends.dtype)
+    counts = np.diff(starts)
+    for place in range(counts.max(initial=0)):
+        at = np.flatnonzero(counts > place)
+        row = bends[stars[starts[at] + place]]
+        row[:, 0:4] *= _same_side(sums[at, 0:4], row[:, 0:4])
+        sums[at] += row
+    moves, area = sums[:, 11] > 0, sums[:, 10].copy()
+    sums /= np.where(area > 0, area, 1)[:, None]
+    sums[:, 10], sums[:, 11] = area > 0, moves
+    sums[~moves] = STILL
+    return sums
 
 
 @np.errstate(over="ignore")
 def bend_texels(
-    turns: Array,  # [T, 4]
-    maps: Array,  # [T, 3, 3]
-    triangles: Array,  # [N] into both
+    bends: Array,  # [V, 12] of bend_vertices
+    corners: Array,  # [N, 3] into them
+    barycentrics: Array,  # [N, 3]
     texture: Array,  # [N, 23] raw channels
 ) -> Array:
-    """Raw channels [N, 23] on the bent triangles; those on others stay bit for bit."""
+    """Raw channels [N, 23] where the vertices bend; those with no such corner stay bit for bit."""
     bent = texture.copy(order="K")  # as it lies in memory: what follows rounds alike
-    at = np.flatnonzero((turns[triangles] != 0).any(axis=1))
-    turn, channels = turns[triangles[at]], texture[at]
-    axes = maps[triangles[at]] @ rotation.to_matrix(_unit(channels[:, 3:7]))
-    stretch = _length(*np.moveaxis(axes, 1, 0))
+    at = np.flatnonzero((bends[:, 11] > 0)[corners].any(axis=1))
+    row = np.zeros((len(at), 12), bends.dtype)
+    for corner in range(3):
+        own = barycentrics[at, corner, None] * bends[corners[at, corner]]
+        own[:, 0:4] *= _same_side(row[:, 0:4], own[:, 0:4])
+        row += own
+    bending = (row[:, 10] > 0) & (row[:, 11] > 0)
+    at, row = at[bending], row[bending]
+    turn, channels = _unit(row[:, 0:4]), texture[at]
+    axes = row[:, SYMMETRIC] @ rotation.to_matrix(_unit(channels[:, 3:7]))
+    stretch = _length(*np.moveaxis(axes, 1, 0)) / row[:, 10, None]
     bent[at, 0:3] = rotation.rotate(turn, channels[:, 0:3])
     bent[at, 3:7] = rotation.multiply(turn, channels[:, 3:7])
     bent[at, 7:10] += np.log(np.clip(stretch, 1 / MOST_STRETCH, MOST_STRETCH))
     return bent
+
+
+def brighten_texels(
+    gains: Array,  # [V] how much brighter colours become, as a share of them
+    corners: Array,  # [N, 3] into these
+    barycentrics: Array,  # [N, 3]
+    texture: Array,  # [N, 23] raw channels
+) -> Array:
+    """Raw channels [N, 23] in another light; those whose gain is 0 stay bit for bit."""
+    lit = texture.copy(order="K")
+    gain = np.einsum("nk,nk->n", barycentrics, gains[corners])
+    at = np.flatnonzero(gain)
+    lit[at, CONSTANT] += gain[at, None] * (lit[at, CONSTANT] + np.asarray(MIDDLE / SH_C0, lit.dtype))
+    return lit
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,18 +206,31 @@ class Frames:
         return Frames(self.axes[kept], self.length[kept], self.shear[kept], self.height[kept])
 
 
-def _turn(
-    before: Array,  # [N, 3, 3]
-    after: Array,  # [N, 3, 3]
-    trace: Array,  # [N] of the in-plane map
-    shear: Array,  # [N]
-) -> Array:
-    """Polar rotations [N, 3, 3] of F: in the plane the angle is atan2(-shear, trace)."""
+def _polar(before: Frames, after: Frames) -> tuple[Array, Array]:
+    """Rotations R [N, 3, 3] and stretches P [N, 6] of F = R P; in the plane the angle is atan2(-shear, trace)."""
+    along = after.length / before.length  # the in-plane map, (along, shear; 0, across)
+    shear = (after.shear - along * before.shear) / before.height
+    across = after.height / before.height
+    trace = along + across
     length = _length(trace, shear)
-    cosine, sine = (trace / length)[:, None], (-shear / length)[:, None]
-    u, v, n = np.moveaxis(after, -1, 0)
-    turned = np.stack([cosine * u + sine * v, cosine * v - sine * u, n], axis=-1)
-    return np.asarray(turned @ before.swapaxes(1, 2))
+    c, s = trace / length, -shear / length
+    u, v, n = np.moveaxis(after.axes, -1, 0)
+    turned = np.stack([c[:, None] * u + s[:, None] * v, c[:, None] * v - s[:, None] * u, n], axis=-1)
+    x, y, z = np.moveaxis(before.axes, -1, 0)
+    xx, xy, yy = c * along, c * shear + s * across, c * across - s * shear  # P in the axes of the triangle
+    rows, columns = np.array([0, 1, 2, 0, 0, 1]), np.array([0, 1, 2, 1, 2, 2])
+    crossed = x[:, rows] * y[:, columns] + y[:, rows] * x[:, columns]
+    stretch = xx[:, None] * x[:, rows] * x[:, columns] + yy[:, None] * y[:, rows] * y[:, columns]
+    stretch += xy[:, None] * crossed + z[:, rows] * z[:, columns]
+    return np.asarray(turned @ before.axes.swapaxes(1, 2)), np.asarray(stretch)
+
+
+def _same_side(
+    q: Array,  # [N, 4]
+    other: Array,  # [N, 4]
+) -> Array:
+    """The sign [N, 1] by which the other quaternion, which is the same rotation, adds to this one."""
+    return np.where(np.sum(q * other, axis=1, keepdims=True) < 0, -1, 1).astype(q.dtype)
 
 
 def _length(*parts: Array) -> Array:

@@ -105,15 +105,19 @@ class RigBuffers(RigPlaces):
 
 @dataclass(frozen=True)
 class ExpressionBuffers:
-    """What moves each vertex that any expression moves (mua.kernels.expressions.Targets)."""
+    """What moves each vertex that any expression moves, and what it may bend (mua.kernels.expressions)."""
 
     vertices: Buffer  # [M]
     starts: Buffer  # [M + 1]
     expressions: Buffer  # [P]
-    offsets: Buffer  # [P, 3]
+    changes: Buffer  # [P, 4]
     vertex_count: int  # M
-    triangles: Buffer  # [T] in reach of the vertices
-    triangle_count: int
+    corners: Buffer  # [T, 3] of the triangles in reach of the vertices
+    triangle_count: int  # T
+    bent_vertices: Buffer  # [B] of these
+    star_starts: Buffer  # [B + 1]
+    stars: Buffer  # [3 T]
+    bent_count: int  # B
 
 
 @dataclass(frozen=True)
@@ -127,9 +131,7 @@ class LevelBuffers:
     tile_count: int
     tiles: Buffer  # from mua.kernels.inverse_dwt.texel_tiles
     tile_rows: Buffer
-    reached: (
-        Buffer  # [K, 2] texels that expressions may bend, and their triangle's place (mua.kernels.expressions.Reach)
-    )
+    reached: Buffer  # [K, 2] texels that expressions may bend, and the place of their triangle
     reached_count: int
     geometry: BranchLevel
     appearance: BranchLevel
@@ -149,15 +151,19 @@ def upload_rig(device: Device, rig: Rig) -> RigBuffers:
 
 def upload_targets(device: Device, targets: Targets, faces: Array) -> ExpressionBuffers:
     """Upload expressions. Errors: InputError where a buffer is larger than the device can bind or hold."""
-    triangles = reach_of(targets.vertices, faces, np.zeros(0, np.int32)).triangles
+    reach = reach_of(targets.vertices, faces, np.zeros(0, np.int32))
     return ExpressionBuffers(
         vertices=device.buffer(targets.vertices.astype(np.uint32), name="expressions.vertices"),
         starts=device.buffer(targets.starts.astype(np.uint32), name="expressions.starts"),
         expressions=device.buffer(targets.expressions.astype(np.uint32), name="expressions.vertices"),
-        offsets=device.buffer(targets.offsets.astype(np.float32), name="expressions.offsets"),
+        changes=device.buffer(targets.changes.astype(np.float32), name="expressions.offsets"),
         vertex_count=len(targets.vertices),
-        triangles=device.buffer(triangles.astype(np.uint32), name="expressions.vertices"),
-        triangle_count=len(triangles),
+        corners=device.buffer(reach.corners.astype(np.uint32), name="expressions.vertices"),
+        triangle_count=len(reach.triangles),
+        bent_vertices=device.buffer(reach.vertices.astype(np.uint32), name="expressions.vertices"),
+        star_starts=device.buffer(reach.starts.astype(np.uint32), name="expressions.vertices"),
+        stars=device.buffer(reach.stars.astype(np.uint32), name="expressions.vertices"),
+        bent_count=len(reach.vertices),
     )
 
 
@@ -186,7 +192,7 @@ class AvatarBuffers:
         self.taps = len(lo)  # of geometry and appearance
         self.rig = self._named(lambda: upload_rig(device, rig))
         held = NO_EXPRESSIONS if rig.expressions is None else rig.expressions
-        self._targets = by_vertex(held.starts, held.vertices, held.offsets)
+        self._targets = by_vertex(held.starts, held.vertices, held.changes)
         self.expressions = self._named(lambda: upload_targets(device, self._targets, rig.mesh.faces))
         stored = {name: self._stored(tree[name]["static_offset"], f"{name}.static_offset") for name in BRANCHES}
         self._levels = [self._level(self.avatar, self.rig, stored)]

@@ -19,8 +19,8 @@ LAYER_ROWS, MESH_COLUMNS = 8, 64  # outputs of a group of MlpMatmul and of MlpMa
 LL_PAIRS = 64  # pairs of texels, a word each, of a group of BlendLl
 DETAIL_TILE = 24  # texels along a side of a group of BlendDetail
 COARSE_TILE = 16  # samples along a side that a group of InverseDwt doubles
-EXPRESSED = 64  # vertices of a group of SumTargets, triangles of one of BendTriangles, texels of one of BendTexels
-BEND = 64  # bytes of a bent triangle
+EXPRESSED = 64  # vertices, triangles or texels of a group of the kernels of expressions
+BEND = 48  # bytes of a bent triangle or vertex
 
 
 @dataclass
@@ -54,6 +54,7 @@ class ChannelDecoder:
         self._upsample_texels = device.kernel("inverse_dwt.compute", "UpsampleTexels")
         self._sum_targets = device.kernel("expressions.compute", "SumTargets")
         self._bend_triangles = device.kernel("expressions.compute", "BendTriangles")
+        self._bend_vertices = device.kernel("expressions.compute", "BendVertices")
         self._bend_texels = device.kernel("expressions.compute", "BendTexels")
 
     def _create_buffers(self, device: Device) -> None:
@@ -67,8 +68,9 @@ class ChannelDecoder:
         textures = [  # finest with details, its ll
             max(b.channels * plane_bytes(low << len(b.details) >> i) for b in branches) for i in range(2)
         ]
-        self.moved = device.buffer(np.zeros(3 * len(avatar.rig.mesh.vertices), np.float32), name="moved")  # [V, 3]
-        self.bends = device.buffer(BEND * self.avatar.expressions.triangle_count, name="bends")
+        self.moved = device.buffer(np.zeros(4 * len(avatar.rig.mesh.vertices), np.float32), name="moved")  # [V, 4]
+        self.triangle_bends = device.buffer(BEND * self.avatar.expressions.triangle_count, name="triangle_bends")
+        self.vertex_bends = device.buffer(BEND * self.avatar.expressions.bent_count, name="vertex_bends")
         self.textures = tuple(device.buffer(textures[i], name=f"texture {i}") for i in range(2))
 
     def part(self, commands: Commands, channels: ChannelSet, part: int) -> None:
@@ -126,7 +128,7 @@ class ChannelDecoder:
                 "vertices": targets.vertices,
                 "starts": targets.starts,
                 "expressions": targets.expressions,
-                "offsets": targets.offsets,
+                "changes": targets.changes,
                 "weights": channels.weights,
                 **moving,
             },
@@ -135,13 +137,37 @@ class ChannelDecoder:
         commands.dispatch(
             self._bend_triangles,
             (groups(targets.triangle_count, EXPRESSED), 1, 1),
-            {"triangles": targets.triangles, "faces": level.places.faces, "bends": self.bends, **moving},
+            {
+                "vertices": targets.bent_vertices,
+                "corners": targets.corners,
+                "triangle_bends": self.triangle_bends,
+                **moving,
+            },
             triangle_count=targets.triangle_count,
+        )
+        commands.dispatch(
+            self._bend_vertices,
+            (groups(targets.bent_count, EXPRESSED), 1, 1),
+            {
+                "starts": targets.star_starts,
+                "stars": targets.stars,
+                "triangle_bends": self.triangle_bends,
+                "vertex_bends": self.vertex_bends,
+            },
+            vertex_count=targets.bent_count,
         )
         commands.dispatch(
             self._bend_texels,
             (groups(level.reached_count, EXPRESSED), 1, 1),
-            {"reached": level.reached, "bends": self.bends, "texel_channels": channels.texel_channels},
+            {
+                "reached": level.reached,
+                "texels": level.places.texels,
+                "corners": targets.corners,
+                "vertices": targets.bent_vertices,
+                "moved": self.moved,
+                "vertex_bends": self.vertex_bends,
+                "texel_channels": channels.texel_channels,
+            },
             texel_count=level.reached_count,
             splat_count=level.splat_count,
         )

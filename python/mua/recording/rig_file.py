@@ -20,6 +20,7 @@ NAMES = (
     *("size", "texels", "triangles", "barycentrics", "claimed_twice"),
 )
 EXPRESSIONS = tuple(f"expression_{part}" for part in ("names", "starts", "vertices", "offsets"))  # where there are any
+GAINS = "expression_gains"  # where light is known
 
 
 def rig_hash(rig: Rig) -> str:
@@ -38,7 +39,7 @@ def write_rig(path: Path, rig: Rig) -> None:
 
 def read_rig(path: Path) -> Rig:
     """Raises InputError for a file that is missing, damaged or lacks an array."""
-    return _rig(read_npz(path, NAMES, optional=EXPRESSIONS))
+    return _rig(read_npz(path, NAMES, optional=(*EXPRESSIONS, GAINS)))
 
 
 def _arrays(rig: Rig) -> dict[str, Array]:
@@ -67,7 +68,8 @@ def _expression_arrays(expressions: Expressions | None) -> dict[str, Array]:
     if expressions is None:
         return {}
     parts = (np.array(expressions.names), expressions.starts, expressions.vertices, expressions.offsets)
-    return dict(zip(EXPRESSIONS, parts, strict=True))
+    lit = {} if expressions.gains is None else {GAINS: expressions.gains}
+    return dict(zip(EXPRESSIONS, parts, strict=True)) | lit
 
 
 def _rig(a: dict[str, Array]) -> Rig:
@@ -85,5 +87,5 @@ def _rig(a: dict[str, Array]) -> Rig:
 def _expressions(a: dict[str, Array]) -> Expressions | None:
     if not all(name in a for name in EXPRESSIONS):
         return None
-    names, *parts = (a[name] for name in EXPRESSIONS)
-    return Expressions(tuple(str(name) for name in names), *parts)
+    names, starts, vertices, offsets = (a[name] for name in EXPRESSIONS)
+    return Expressions(tuple(str(name) for name in names), starts, vertices, offsets, a.get(GAINS))

@@ -18,9 +18,16 @@ class Expressions:
     starts: Array  # [E + 1] int32 into the entries: those of expression e are starts[e] to starts[e + 1] - 1
     vertices: Array  # [P] int32 of the mesh, ascending within an expression
     offsets: Array  # [P, 3] float32, metres
+    gains: Array | None = None  # [P] float32: how much brighter colours there become, a share of them; None: all 0
 
     def __len__(self) -> int:
         return len(self.names)
+
+    @property
+    def changes(self) -> Array:
+        """Offset and gain [P, 4] of each entry."""
+        gains = np.zeros(len(self.vertices), np.float32) if self.gains is None else self.gains
+        return np.column_stack([self.offsets, gains])
 
     def displacement(
         self,
@@ -32,6 +39,18 @@ class Expressions:
         moved = np.zeros((vertices, 3), dtype=np.result_type(weights, np.float32))
         np.add.at(moved, self.vertices, np.repeat(weights, np.diff(self.starts))[:, None] * self.offsets)
         return moved
+
+    def brightening(
+        self,
+        weights: Array,  # [E]
+        *,
+        vertices: int,
+    ) -> Array:
+        """How much brighter [V] the weights make the colours about the vertices, as a share of them."""
+        gain = np.zeros(vertices, dtype=np.result_type(weights, np.float32))
+        if self.gains is not None:
+            np.add.at(gain, self.vertices, np.repeat(weights, np.diff(self.starts)) * self.gains)
+        return gain
 
     def at(
         self,
@@ -50,4 +69,5 @@ class Expressions:
             starts=np.concatenate([[0], np.cumsum(counts)]).astype(np.int32),
             vertices=at[order].astype(np.int32),
             offsets=self.offsets[order],
+            gains=None if self.gains is None else self.gains[order],
         )

@@ -49,7 +49,7 @@ export class AvatarBuffers {
     this.faces = memory.buffer(template.faces, "template.faces");
     this.skinIndices = memory.buffer(template.skinIndices, "template.skin_indices");
     this.skinWeights = memory.buffer(template.skinWeights, "template.skin_weights");
-    this.expressing = Expressing ? new Expressing(memory, avatar, this.faces) : null;
+    this.expressing = Expressing ? new Expressing(memory, avatar) : null;
     const statics = { geometry: avatar.geometry.staticOffset, appearance: avatar.appearance.staticOffset };
     /** @type {LevelBuffers[]} */
     this.levels = [this.levelOf(texels, statics, 0)];

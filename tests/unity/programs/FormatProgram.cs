@@ -213,6 +213,10 @@ internal static class FormatProgram
             add("expressions.starts", avatar.Expressions.Starts);
             add("expressions.vertices", avatar.Expressions.Vertices);
             add("expressions.offsets", avatar.Expressions.Offsets);
+            if (avatar.Expressions.Gains != null)
+            {
+                add("expressions.gains", avatar.Expressions.Gains);
+            }
         }
         return tensors;
     }

@@ -21,7 +21,9 @@ namespace Mua.Format
             Tensor moved = tensors.Indices(tree.Child("vertices"), "expressions.vertices", 0, vertices, count);
             RequireAscending(moved.Integers, starts.Integers);
             Tensor offsets = tensors.Reals(tree.Child("offsets"), "expressions.offsets", count, 3);
-            return new Expressions { Names = names, Starts = starts, Vertices = moved, Offsets = offsets };
+            Table lit = tree.Child("gains");
+            Tensor gains = lit == null ? null : tensors.Reals(lit, "expressions.gains", count);
+            return new Expressions { Names = names, Starts = starts, Vertices = moved, Offsets = offsets, Gains = gains };
         }
 
         /// <summary>[F, E] of a clip; null where it has none.</summary>

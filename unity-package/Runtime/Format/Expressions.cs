@@ -14,5 +14,8 @@ namespace Mua.Format
 
         /// <summary>[P, 3] how far weight 1 moves them, metres.</summary>
         public Tensor Offsets { get; internal set; }
+
+        /// <summary>[P] how much brighter colours become there, as a share of them; null where they stay.</summary>
+        public Tensor Gains { get; internal set; }
     }
 }

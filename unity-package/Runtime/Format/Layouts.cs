@@ -105,7 +105,8 @@ namespace Mua.Format
             new Field("names", Kind.Text, vector: true, required: true),
             new Field("starts", Kind.Table, required: true, table: Tensor),
             new Field("vertices", Kind.Table, required: true, table: Tensor),
-            new Field("offsets", Kind.Table, required: true, table: Tensor));
+            new Field("offsets", Kind.Table, required: true, table: Tensor),
+            new Field("gains", Kind.Table, table: Tensor));
 
         public static readonly Layout Avatar = new Layout(
             new Field("version_major", Kind.U16),

@@ -12,26 +12,29 @@ namespace Mua
         private static readonly int Vertices = Shader.PropertyToID("vertices");
         private static readonly int Starts = Shader.PropertyToID("starts");
         private static readonly int EntryExpressions = Shader.PropertyToID("expressions");
-        private static readonly int Offsets = Shader.PropertyToID("offsets");
+        private static readonly int Changes = Shader.PropertyToID("changes");
         private static readonly int Weights = Shader.PropertyToID("weights");
-        private static readonly int Triangles = Shader.PropertyToID("triangles");
-        private static readonly int Faces = Shader.PropertyToID("faces");
+        private static readonly int Corners = Shader.PropertyToID("corners");
+        private static readonly int Stars = Shader.PropertyToID("stars");
+        private static readonly int Texels = Shader.PropertyToID("texels");
         private static readonly int Reached = Shader.PropertyToID("reached");
         private static readonly int Moved = Shader.PropertyToID("moved");
         private static readonly int Mesh = Shader.PropertyToID("mesh");
-        private static readonly int Bends = Shader.PropertyToID("bends");
+        private static readonly int TriangleBends = Shader.PropertyToID("triangle_bends");
+        private static readonly int VertexBends = Shader.PropertyToID("vertex_bends");
         private static readonly int TexelChannels = Shader.PropertyToID("texel_channels");
         private static readonly int VertexCount = Shader.PropertyToID("vertex_count");
         private static readonly int TriangleCount = Shader.PropertyToID("triangle_count");
         private static readonly int TexelCount = Shader.PropertyToID("texel_count");
         private static readonly int SplatCount = Shader.PropertyToID("splat_count");
 
-        private readonly Kernel sumTargets, bendTriangles, bendTexels;
+        private readonly Kernel sumTargets, bendTriangles, bendVertices, bendTexels;
 
         public Expressions(ComputeShader shader)
         {
             sumTargets = new Kernel(shader, File, "SumTargets");
             bendTriangles = new Kernel(shader, File, "BendTriangles");
+            bendVertices = new Kernel(shader, File, "BendVertices");
             bendTexels = new Kernel(shader, File, "BendTexels");
         }
 
@@ -42,7 +45,7 @@ namespace Mua
             sumTargets.Set(commands, Vertices, targets.Vertices);
             sumTargets.Set(commands, Starts, targets.Starts);
             sumTargets.Set(commands, EntryExpressions, targets.Expressions);
-            sumTargets.Set(commands, Offsets, targets.Offsets);
+            sumTargets.Set(commands, Changes, targets.Changes);
             sumTargets.Set(commands, Weights, weights);
             sumTargets.Set(commands, Moved, moved);
             sumTargets.Set(commands, Mesh, mesh);
@@ -50,24 +53,38 @@ namespace Mua
             Dispatch(commands, sumTargets, targets.VertexCount);
         }
 
-        /// <summary>How the triangles in reach bend.</summary>
+        /// <summary>How the triangles in reach bend, and the vertices by them.</summary>
         public void Bend(
-            CommandBuffer commands, AvatarBuffers avatar, GraphicsBuffer moved, GraphicsBuffer mesh, GraphicsBuffer bends)
+            CommandBuffer commands, ExpressionBuffers targets, GraphicsBuffer moved, GraphicsBuffer mesh,
+            GraphicsBuffer triangleBends, GraphicsBuffer vertexBends)
         {
-            bendTriangles.Set(commands, Triangles, avatar.Expressions.Triangles);
-            bendTriangles.Set(commands, Faces, avatar.Faces);
+            bendTriangles.Set(commands, Vertices, targets.BentVertices);
+            bendTriangles.Set(commands, Corners, targets.Corners);
             bendTriangles.Set(commands, Moved, moved);
             bendTriangles.Set(commands, Mesh, mesh);
-            bendTriangles.Set(commands, Bends, bends);
-            bendTriangles.Set(commands, TriangleCount, avatar.Expressions.TriangleCount);
-            Dispatch(commands, bendTriangles, avatar.Expressions.TriangleCount);
+            bendTriangles.Set(commands, TriangleBends, triangleBends);
+            bendTriangles.Set(commands, TriangleCount, targets.TriangleCount);
+            Dispatch(commands, bendTriangles, targets.TriangleCount);
+
+            bendVertices.Set(commands, Starts, targets.StarStarts);
+            bendVertices.Set(commands, Stars, targets.Stars);
+            bendVertices.Set(commands, TriangleBends, triangleBends);
+            bendVertices.Set(commands, VertexBends, vertexBends);
+            bendVertices.Set(commands, VertexCount, targets.BentCount);
+            Dispatch(commands, bendVertices, targets.BentCount);
         }
 
-        /// <summary>The texels of a level on these triangles.</summary>
-        public void Bend(CommandBuffer commands, LevelBuffers level, GraphicsBuffer bends, GraphicsBuffer texelChannels)
+        /// <summary>The texels of a level between these vertices, and their colours.</summary>
+        public void BendTexels(
+            CommandBuffer commands, ExpressionBuffers targets, LevelBuffers level, GraphicsBuffer moved,
+            GraphicsBuffer vertexBends, GraphicsBuffer texelChannels)
         {
+            bendTexels.Set(commands, Vertices, targets.BentVertices);
+            bendTexels.Set(commands, Moved, moved);
             bendTexels.Set(commands, Reached, level.Reached);
-            bendTexels.Set(commands, Bends, bends);
+            bendTexels.Set(commands, Texels, level.Texels);
+            bendTexels.Set(commands, Corners, targets.Corners);
+            bendTexels.Set(commands, VertexBends, vertexBends);
             bendTexels.Set(commands, TexelChannels, texelChannels);
             bendTexels.Set(commands, TexelCount, level.ReachedCount);
             bendTexels.Set(commands, SplatCount, level.SplatCount);

@@ -9,6 +9,7 @@ the dynamics.
 """
 
 from collections.abc import Container, Iterator
+from dataclasses import replace
 
 import numpy as np
 
@@ -19,6 +20,7 @@ from mua.pose.descriptor import heading_of
 from mua.pose.skeleton import Pose
 from mua.rig.bones import figure_scale
 from mua.rig.character import Character
+from mua.rig.expressions import Expressions
 from mua.teacher import Light, TeacherFrame
 from mua.teachers.simulated.shading import shade, visibility
 from mua.teachers.simulated.simulated_surface import SimulatedSurface
@@ -26,6 +28,7 @@ from mua.teachers.simulated.smoothing import low_pass
 from mua.teachers.simulated.still import StillTeacher
 from mua.texture.surfels import vertex_normals
 
+DARKEST = 3 / 255  # light on a vertex, below which no share of it is taken
 COARSE_WAVELENGTH = 0.2  # metres on a person: longer deformation moves the canonical mesh, shorter the offsets
 
 
@@ -47,6 +50,8 @@ class SimulatedTeacher(StillTeacher):
         self._moving = SimulatedSurface(character, seed=seed)
         self._normals = vertex_normals(mesh.vertices, mesh.faces)
         self._longer = low_pass(mesh.vertices, mesh.faces, COARSE_WAVELENGTH * figure_scale(mesh.vertices))
+        if self.rig.expressions is not None:
+            self.rig = replace(self.rig, expressions=self._lit(self.rig.expressions))
 
     def frames(self, clip: Clip, wanted: Container[int]) -> Iterator[TeacherFrame | Pose]:
         """Simulate `clip` from rest in its first pose; yield whole frames where wanted, else poses.
@@ -59,6 +64,31 @@ class SimulatedTeacher(StillTeacher):
             return
         for frame, moved in enumerate(self._moving.frames(clip)):
             yield self._whole(clip.pose(frame), moved) if frame in wanted else clip.pose(frame)
+
+    def _lit(self, expressions: Expressions) -> Expressions:
+        """The template's expressions with their gains: how each at 1 changes the light on the bind pose."""
+        gains, rest = np.zeros(len(expressions.vertices)), self._brightness(np.zeros(len(expressions)))
+        for e, weights in enumerate(np.eye(len(expressions))):
+            entries = slice(*expressions.starts[e : e + 2])
+            at = expressions.vertices[entries]
+            gains[entries] = self._brightness(weights)[at] / np.maximum(rest[at], DARKEST) - 1
+        return replace(expressions, gains=gains.astype(np.float32))
+
+    def _brightness(
+        self,
+        weights: Array,  # [E]
+    ) -> Array:
+        """The light [T] on the template's vertices in the bind pose, all colours together."""
+        expressions, skeleton, bind = (
+            self._character.expressions,
+            self._character.skeleton,
+            self._character.mesh.vertices,
+        )
+        assert expressions is not None
+        moved = bind + expressions.displacement(weights, vertices=len(bind))
+        surface = self._skinned.posed(skeleton.skinning(skeleton.bind_rotations, skeleton.bind_translations))
+        light = self._light(surface.joints, surface.dual, moved, self._surface(moved)[0])
+        return np.asarray(light.gain[self._template].sum(axis=1))
 
     def _coarse(self, displacement: Array) -> Array:
         """The long waves [T, 3] of a displacement [V, 3], which the canonical mesh takes on."""

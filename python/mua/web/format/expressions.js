@@ -4,11 +4,16 @@ import { refuse } from "./parser.js";
 import { indices, MAX_BYTES, reals } from "./tensors.js";
 
 /** @typedef {import("./parser.js").Tree} Tree */
-/** @typedef {{starts: Int32Array, vertices: Int32Array, offsets: Float32Array}} Targets expression by expression: the entries starts[e] to starts[e + 1] - 1 are vertices [P] and how far weight 1 moves them [P, 3], metres */
+/** @typedef {{starts: Int32Array, vertices: Int32Array, offsets: Float32Array, gains: Float32Array}} Targets expression by expression: the entries starts[e] to starts[e + 1] - 1 are vertices [P] and how far weight 1 moves them [P, 3], metres, and how much brighter colours become there [P], as a share of them */
 
 /** Names of expressions and what each moves; none where the file has none. @param {Tree | undefined} tree @param {number} vertices of the template @returns {{names: string[], targets: Targets}} */
 export function readExpressions(tree, vertices) {
-  const none = { starts: new Int32Array(1), vertices: new Int32Array(), offsets: new Float32Array() };
+  const none = {
+    starts: new Int32Array(1),
+    vertices: new Int32Array(),
+    offsets: new Float32Array(),
+    gains: new Float32Array(),
+  };
   if (!tree) return { names: [], targets: none };
   /** @type {string[]} */
   const names = tree.names;
@@ -22,7 +27,10 @@ export function readExpressions(tree, vertices) {
   if (moved.some((vertex, i) => i > 0 && vertex <= moved[i - 1] && !begins.has(i)))
     throw refuse("expressions.vertices", "vertices must ascend within an expression");
   const offsets = reals(tree.offsets, "expressions.offsets", [moved.length, 3]).values;
-  return { names, targets: { starts, vertices: moved, offsets } };
+  const gains = tree.gains
+    ? reals(tree.gains, "expressions.gains", [moved.length]).values
+    : new Float32Array(moved.length);
+  return { names, targets: { starts, vertices: moved, offsets, gains } };
 }
 
 /** Weights [F, E] of a clip. @param {Tree} tensor @param {string} path @param {number[]} shape */

@@ -102,6 +102,7 @@ export const TABLES = {
     { name: "starts", kind: "Tensor", required: true },
     { name: "vertices", kind: "Tensor", required: true },
     { name: "offsets", kind: "Tensor", required: true },
+    { name: "gains", kind: "Tensor" },
   ],
   Avatar: [
     { name: "version_major", kind: "ushort" },
