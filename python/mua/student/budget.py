@@ -24,7 +24,6 @@ class Sizes:
     hidden: int
 
 
-# From docs/research/ranks.md; each costs more than the one before it, and errs less.
 # From docs/research/ranks.md; each costs more than the one before it, and its bases hold more.
 FRONTIER = (
     Sizes(Ranks(8, 8, 8), Ranks(16, 16, 8), components=32, hidden=128),
