@@ -7,13 +7,14 @@ from pathlib import Path
 import gen_golden
 import pytest
 from csharp import PROGRAMS, ROOT, CSharp, by_name
+from golden import read_golden
 from package_compiler import PACKAGE, Compiler
 from replay import replay
 
 from mua.gpu import Device
 
 KERNELS = ROOT / "ComputeShaders"
-CASES = 35
+CASES = len(read_golden())
 ASSEMBLIES = ("UnityEngine", "UnityEditor", "UnityEngine.TestRunner", "nunit.framework", "Mua.Format", "Mua.Motion")
 OURS = ("Mua.Avatar", "Mua.Avatar.SelfTest", "Mua.Avatar.Editor", "Mua.Avatar.Tests", "Mua.Avatar.Editor.Tests")
 Reports = dict[str, list[str]]

@@ -97,7 +97,7 @@ namespace Mua
         {
             AvatarRenderer first = Show(files[0]), second = Show(files[1]);
             first.IsPlaying = second.IsPlaying = false;
-            Frames(2);
+            Frames(Turns);
             second.enabled = false;
             Say("left", Dispatches(1));
             Say("idle", Dispatches(1));

@@ -1,4 +1,4 @@
-// Retargets poses with unity-package/Runtime/Motion/Retargeting for tests/unity/test_retarget.py, which writes what it reads:
+// Retargets poses with unity-package/Runtime/Motion/Retargeting for tests/unity/test_retargeted_poses.py, which writes what it reads:
 // lines of a word and numbers or names, apart by tabs. An empty line begins another case.
 
 using System;
