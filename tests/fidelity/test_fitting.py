@@ -10,6 +10,7 @@ from mua.characters.read import read_character
 from mua.fidelity.compare import compare
 from mua.fidelity.fitting import fit
 from mua.rig.character import Character
+from mua.teachers.simulated.still import StillTeacher
 
 TEXELS, STEPS = 48, 30
 
@@ -26,10 +27,9 @@ def column(tmp_path: Path) -> Character:
 
 def test_fitted_splats_are_nearer_to_the_source_in_all_poses(column: Character) -> None:
     assert column.source is not None
-    corrections = fit(column, column.clips, texels=TEXELS, source=column.source, steps=STEPS)
-    laid, fitted = (
-        compare(column, column.clips, texels=TEXELS, source=column.source, corrections=by) for by in (None, corrections)
-    )
+    teacher = StillTeacher(column, texels=TEXELS)
+    corrected = teacher.corrected(fit(column, column.clips, teacher=teacher, source=column.source, steps=STEPS))
+    laid, fitted = (compare(column, column.clips, teacher=each, source=column.source) for each in (teacher, corrected))
     assert fitted.iou > laid.iou
     for before, after in zip(laid.poses, fitted.poses, strict=True):
         assert after.agreement.psnr > before.agreement.psnr
@@ -37,11 +37,12 @@ def test_fitted_splats_are_nearer_to_the_source_in_all_poses(column: Character) 
 
 def test_without_steps_nothing_is_corrected(column: Character) -> None:
     assert column.source is not None
-    assert not np.any(fit(column, (), texels=TEXELS, source=column.source, steps=0))
+    assert not np.any(fit(column, (), teacher=StillTeacher(column, texels=TEXELS), source=column.source, steps=0))
 
 
 def test_the_same_character_is_fitted_alike(column: Character) -> None:
     assert column.source is not None
-    first, second = (fit(column, column.clips, texels=TEXELS, source=column.source, steps=3) for _ in range(2))
+    teacher = StillTeacher(column, texels=TEXELS)
+    first, second = (fit(column, column.clips, teacher=teacher, source=column.source, steps=3) for _ in range(2))
     assert np.array_equal(first, second)
     assert first.any()

@@ -184,8 +184,10 @@ def close_ups(
     if character.source is None:
         raise SystemExit(f"{path}: this format keeps nothing to compare with")
     clips = motion_range(character, (), frames=fitting.POSES, seed=0, short=True)
-    corrections = fitting.fit(character, clips, texels=texels, source=character.source, steps=steps) if steps else None
-    teacher = StillTeacher(character, texels=texels, corrections=corrections)
+    teacher = StillTeacher(character, texels=texels)
+    if steps:
+        corrections = fitting.fit(character, clips, teacher=teacher, source=character.source, steps=steps)
+        teacher = teacher.corrected(corrections)
     surface = SkinnedSurface(character)
     edges = open_edges(character.mesh.vertices, character.mesh.faces)
     scene, (part, material) = character.source.scene, as_textured(character, texels)

@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 from PIL import Image
 
-from mua.arrays import Array
 from mua.baking.listener import Listener
 from mua.baking.settings import BakeSettings
 from mua.baking.sources import faced, load_baked_character
@@ -29,6 +28,7 @@ from mua.motion.source import SourceMotion
 from mua.pose.clip import Clip
 from mua.pose.encoding import RATE
 from mua.rig.character import Character
+from mua.teachers.simulated.still import StillTeacher
 
 WITHOUT_FILE = "the procedural character has no file, so there is nothing to compare its splats with"
 
@@ -94,19 +94,18 @@ def fidelity_of(
     clips: Sequence[Clip],
     *,
     texels: int,
-    corrections: Array | None = None,
+    teacher: StillTeacher | None = None,
     faces: bool = False,
 ) -> tuple[Fidelity | None, tuple[str, ...]]:
     """How much the splats look like the character, and a sentence for what is poor; None where nothing is measured.
 
-    With `faces`, also in each of its expressions.
+    The splats are those of `teacher`, or as many as `texels` says. With `faces`, also in each of its expressions.
     """
     if character.source is None:
         return None, (WITHOUT_FILE,)
     try:
-        fidelity = compare(
-            character, clips, texels=texels, source=character.source, corrections=corrections, faces=faces
-        )
+        teacher = teacher or StillTeacher(character, texels=texels)
+        fidelity = compare(character, clips, teacher=teacher, source=character.source, faces=faces)
     except InputError as error:
         return None, (f"The splats were not compared with the source: {error}.",)
     return fidelity, report.sentences(fidelity)

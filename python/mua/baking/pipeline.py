@@ -1,8 +1,8 @@
 """The stages of a bake in order; each leaves its result in the work directory and is resumed from there."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
-from functools import partial
+from functools import cache, partial
 
 import numpy as np
 import torch
@@ -31,6 +31,7 @@ from mua.recording import PlannedClip, Recording
 from mua.rig.character import Character
 from mua.rig.template import make_template
 from mua.rig.texel_binding import bind_texels
+from mua.teachers.simulated.still import StillTeacher
 from mua.teachers.simulated.teacher import SimulatedTeacher
 from mua.training.memory import release_memory
 
@@ -70,8 +71,10 @@ def _bake(settings: BakeSettings, device: torch.device, listener: Listener) -> B
     planned += ranges
 
     require_writable(settings.output)
-    corrections = _fitted(settings, character, planned, listener)
-    fidelity = _fidelity(character, clips, settings.student.texels, corrections, listener)
+    still = cache(partial(StillTeacher, character, texels=settings.student.texels))
+    corrections = _fitted(settings, character, still, planned, listener)
+    fidelity = _fidelity(character, clips, still, corrections, listener)
+    del still
     character = replace(character, source=None)  # its textures may be large
     release_memory()
     recording = _record(settings, character, corrections, planned, listener)
@@ -93,7 +96,11 @@ def _bake(settings: BakeSettings, device: torch.device, listener: Listener) -> B
 
 
 def _fitted(
-    settings: BakeSettings, character: Character, planned: list[PlannedClip], listener: Listener
+    settings: BakeSettings,
+    character: Character,
+    still: Callable[[], StillTeacher],
+    planned: list[PlannedClip],
+    listener: Listener,
 ) -> Array | None:
     """Corrections of the splats by images of the source, kept in the work directory; None without source or OpenGL."""
     if character.source is None:
@@ -107,7 +114,7 @@ def _fitted(
         corrections = fitting.fit(
             character,
             [one.clip for one in planned if not one.held_out],
-            texels=settings.student.texels,
+            teacher=still(),
             source=character.source,
             steps=steps,
             progress=lambda done: listener.step(done, steps),
@@ -121,13 +128,18 @@ def _fitted(
 
 
 def _fidelity(
-    character: Character, clips: list[Clip], texels: int, corrections: Array | None, listener: Listener
+    character: Character,
+    clips: list[Clip],
+    still: Callable[[], StillTeacher],
+    corrections: Array | None,
+    listener: Listener,
 ) -> Fidelity | None:
     """Compare splats and source and note the result; None if there is no source or no OpenGL."""
     if character.source is None:
         return None
     listener.stage("comparison with source")
-    fidelity, warnings = fidelity_of(character, clips, texels=texels, corrections=corrections)
+    teacher = still() if corrections is None else still().corrected(corrections)
+    fidelity, warnings = fidelity_of(character, clips, texels=teacher.rig.texels.size, teacher=teacher)
     for sentence in (*([] if fidelity is None else [report.summary(fidelity)]), *warnings):
         listener.note(sentence)
     return fidelity

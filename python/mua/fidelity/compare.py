@@ -81,19 +81,17 @@ def compare(
     character: Character,
     clips: Sequence[Clip],
     *,
-    texels: int,
+    teacher: StillTeacher,
     source: Source,
-    corrections: Array | None = None,
     faces: bool = False,
 ) -> Fidelity:
-    """Draw a character's source and its splats as the file stands and in frames spread over `clips`.
+    """Draw a character's source and its still `teacher`'s splats, as the file stands and in frames spread over `clips`.
 
     With `faces`, also close up in each of the character's expressions.
     Raises InputError where this machine has no OpenGL.
     """
     poser = Poser(source, character.skeleton)
     moments = [poser.rest(), *(poser.of_clip(clip, frame) for clip, frame in spread(clips, POSED))]
-    teacher = StillTeacher(character, texels=texels, corrections=corrections)
     with opened() as context:
         studio = _Studio(context, source, poser)
         views = [ROUND, *({side: degrees} for side, degrees in itertools.islice(itertools.cycle(IN_MOTION), POSED))]

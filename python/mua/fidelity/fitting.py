@@ -56,17 +56,17 @@ def fit(
     character: Character,
     clips: Sequence[Clip],
     *,
-    texels: int,
+    teacher: StillTeacher,
     source: Source,
     steps: int = STEPS,
     progress: Callable[[int], None] = lambda done: None,
 ) -> Array:
-    """What to add to the offsets, log scales and albedo of this character's still teacher, [N, 9] float32.
+    """What to add to the offsets, log scales and albedo of this character's still `teacher`, [N, 9] float32.
 
     Raises InputError where this machine has no OpenGL.
     """
     rng = np.random.default_rng(0)
-    teacher, side = StillTeacher(character, texels=texels), round(SIDE * texels)
+    side = round(SIDE * teacher.rig.texels.size)
     poser = Poser(source, character.skeleton)
     with opened() as context:
         paint = Painter(context, source.scene.parts, source.scene.materials, screen=(side, side))

@@ -1,5 +1,8 @@
 """The simulated character without simulation and light: what its splats show of the character's own surface."""
 
+from copy import copy
+from typing import Self
+
 import numpy as np
 
 from mua import rotation
@@ -36,7 +39,18 @@ class StillTeacher:
         self._skinned = SkinnedSurface(character)
         self._surface = SurfaceFrames(mesh.vertices, mesh.faces)
         self._smooth_turn = low_pass(mesh.vertices, mesh.faces, TURN_WAVELENGTH * figure_scale(mesh.vertices))
-        self._texels = SurfaceTexels(character, self.rig, corrections)
+        self._texels = SurfaceTexels(character, self.rig)
+        if corrections is not None:
+            self._texels = self._texels.corrected(corrections)
+
+    def corrected(
+        self,
+        by: Array,  # [N, 9], as `corrections` above
+    ) -> Self:
+        """The same teacher with corrections of its splats; this one stays as it is."""
+        other = copy(self)
+        other._texels = self._texels.corrected(by)
+        return other
 
     def frame(
         self,

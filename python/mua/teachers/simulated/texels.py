@@ -1,5 +1,7 @@
 """From a deformed and lit surface, by vertex, to the Gaussian texture, by texel."""
 
+from copy import copy
+
 import numpy as np
 from scipy import sparse
 
@@ -31,7 +33,6 @@ class SurfaceTexels:
         self,
         character: Character,
         rig: Rig,
-        corrections: Array | None = None,  # [N, 9] beside offsets, log scales and albedo (mua.fidelity.fitting)
     ) -> None:
         mesh, texels = character.mesh, rig.texels
         dense = build_texel_map(mesh, texels.size)
@@ -64,14 +65,21 @@ class SurfaceTexels:
             np.ascontiguousarray(rows.T, dtype=np.float32)
             for rows in (relief, surfels.smooth, surfels.log_scales, albedo[:, :3])
         )
-        if corrections is not None:
-            self._relief += corrections.T[0:3]
-            self._log_scales += corrections.T[3:6]
-            self._albedo += corrections.T[6:9]
         self._stretch = SurfelStretch(mesh.vertices, mesh.faces, triangles=triangles, rotations=surfels.smooth)
         self._turned_to_lines = np.ascontiguousarray((surfels.rotations - surfels.smooth).T, dtype=np.float32)
         alpha = np.clip(surfel_opacities(albedo[:, 3]), 1e-6, 1 - 1e-6)
         self._opacity = np.clip(np.log(alpha / (1 - alpha)), -MOST_CLEAR, MOST_OPAQUE)
+
+    def corrected(
+        self,
+        by: Array,  # [N, 9] beside offsets, log scales and albedo (mua.fidelity.fitting)
+    ) -> "SurfaceTexels":
+        """The same texels with corrections; these stay as they are."""
+        other, planes = copy(self), by.T.astype(np.float32)
+        other._relief = self._relief + planes[0:3]
+        other._log_scales = self._log_scales + planes[3:6]
+        other._albedo = self._albedo + planes[6:9]
+        return other
 
     def texture(
         self,
