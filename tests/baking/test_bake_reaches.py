@@ -6,6 +6,7 @@ Recording, training and comparison, which take minutes, are stand-ins that keep 
 import json
 from collections.abc import Callable
 from pathlib import Path
+from unittest.mock import Mock
 
 import gltf_files
 import numpy as np
@@ -104,7 +105,7 @@ def run(
         late = ran[arguments] = Late()
 
         def compared(
-            character: Character, clips: list[Clip], *, texels: int, corrections: object = None, faces: bool = False
+            character: Character, clips: list[Clip], *, texels: int, teacher: object = None, faces: bool = False
         ) -> tuple[None, tuple[str, ...]]:
             late.character, late.clips, late.compared = character, tuple(clips), texels
             return None, ()
@@ -124,6 +125,7 @@ def run(
 
         for module in (pipeline, check):
             monkeypatch.setattr(module, "fidelity_of", compared)
+        monkeypatch.setattr(pipeline, "StillTeacher", Mock())
         monkeypatch.setattr(fitting, "fit", lambda *_, **__: np.zeros((1, 9)))
         monkeypatch.setattr(pipeline, "SimulatedTeacher", teacher)
         monkeypatch.setattr(pipeline, "recorded", recorded)
