@@ -79,18 +79,33 @@ def _listed(names: Sequence[str], indent: int) -> str:
 
 
 def _pairs(names: Mapping[str, str]) -> str:
-    return "\n".join(f"            {{ {_quoted(other)}, {_quoted(name)} }}," for other, name in names.items())
+    return _wrapped([f"{{ {_quoted(other)}, {_quoted(name)} }}," for other, name in names.items()], 12)
 
 
 def _sets(stand_ins: Mapping[str, Sequence[Mapping[str, float]]]) -> str:
     def written(weights: Mapping[str, float]) -> str:
-        lines = "".join(f"\n{' ' * 24}{{ {_quoted(name)}, {share}f }}," for name, share in weights.items())
-        return f"{' ' * 20}new Dictionary<string, float>\n{' ' * 20}{{{lines}\n{' ' * 20}}},\n"
+        shares = [f"{{ {_quoted(name)}, {share}f }}," for name, share in weights.items()]
+        return _wrapped(["new Dictionary<string, float> {", *shares, "},"], 20)
 
     return "\n".join(
-        f"                {{ {_quoted(name)}, new[] {{\n{''.join(map(written, sets))}                }} }},"
+        f"                {{ {_quoted(name)}, new[] {{\n" + "\n".join(map(written, sets)) + "\n                } },"
         for name, sets in stand_ins.items()
     )
+
+
+def _wrapped(parts: Sequence[str], indent: int) -> str:
+    """Parts on lines of at most WIDTH characters, none of them broken."""
+    whole = [part.replace(" ", "\0") for part in parts]
+    edge = " " * indent
+    lines = textwrap.wrap(
+        " ".join(whole),
+        WIDTH,
+        initial_indent=edge,
+        subsequent_indent=edge,
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
+    return "\n".join(lines).replace("\0", " ")
 
 
 def main() -> None:

@@ -43,110 +43,37 @@ namespace Mua.Motion
         /// <summary>Other names, with those that they mean.</summary>
         public static readonly Dictionary<string, string> OtherNames = new Dictionary<string, string>
         {
-            { "a", "aa" },
-            { "i", "ih" },
-            { "u", "ou" },
-            { "e", "ee" },
-            { "o", "oh" },
-            { "joy", "happy" },
-            { "sorrow", "sad" },
-            { "fun", "relaxed" },
-            { "viseme_i", "viseme_ih" },
-            { "viseme_o", "viseme_oh" },
-            { "viseme_u", "viseme_ou" },
-            { "sil", "viseme_sil" },
-            { "pp", "viseme_PP" },
-            { "ff", "viseme_FF" },
-            { "th", "viseme_TH" },
-            { "dd", "viseme_DD" },
-            { "kk", "viseme_kk" },
-            { "ch", "viseme_CH" },
-            { "ss", "viseme_SS" },
-            { "nn", "viseme_nn" },
-            { "rr", "viseme_RR" },
-            { "mth_a", "aa" },
-            { "mth_i", "ih" },
-            { "mth_u", "ou" },
-            { "mth_e", "ee" },
-            { "mth_o", "oh" },
-            { "eye_close", "blink" },
-            { "eye_close_l", "blinkLeft" },
-            { "eye_close_r", "blinkRight" },
-            { "eye_def_c", "blink" },
-            { "all_joy", "happy" },
-            { "all_angry", "angry" },
-            { "all_sorrow", "sad" },
-            { "all_fun", "relaxed" },
-            { "all_surprised", "surprised" },
-            { "all_neutral", "neutral" },
-            { "eyes_closed", "blink" },
-            { "eyes_look_up", "lookUp" },
-            { "eyes_look_down", "lookDown" },
-            { "mouth_open", "aa" },
-            { "mouth_smile", "happy" },
-            { "eye_closed_left", "eyeBlinkLeft" },
-            { "eye_closed_right", "eyeBlinkRight" },
-            { "mouth_corner_pull_left", "mouthSmileLeft" },
-            { "mouth_corner_pull_right", "mouthSmileRight" },
-            { "mouth_closed", "mouthClose" },
-            { "lip_funnel", "mouthFunnel" },
-            { "lip_pucker", "mouthPucker" },
-            { "あ", "aa" },
-            { "い", "ih" },
-            { "う", "ou" },
-            { "え", "ee" },
-            { "お", "oh" },
-            { "まばたき", "blink" },
-            { "ウィンク", "blinkLeft" },
-            { "ウィンク右", "blinkRight" },
-            { "笑い", "relaxed" },
-            { "びっくり", "surprised" },
-            { "AA_VI_00_Sil", "viseme_sil" },
-            { "AA_VI_01_PP", "viseme_PP" },
-            { "AA_VI_02_FF", "viseme_FF" },
-            { "AA_VI_03_TH", "viseme_TH" },
-            { "AA_VI_04_DD", "viseme_DD" },
-            { "AA_VI_05_KK", "viseme_kk" },
-            { "AA_VI_06_CH", "viseme_CH" },
-            { "AA_VI_07_SS", "viseme_SS" },
-            { "AA_VI_08_nn", "viseme_nn" },
-            { "AA_VI_09_RR", "viseme_RR" },
-            { "AA_VI_10_aa", "viseme_aa" },
-            { "AA_VI_11_E", "viseme_E" },
-            { "AA_VI_12_ih", "viseme_ih" },
-            { "AA_VI_13_oh", "viseme_oh" },
-            { "AA_VI_14_ou", "viseme_ou" },
-            { "LeyeClose_h", "eyeBlinkLeft" },
-            { "LeyeOpen_h", "eyeWideLeft" },
-            { "Lsquint_h", "eyeSquintLeft" },
-            { "LsmileClose_h", "mouthSmileLeft" },
-            { "LmouthSad_h", "mouthFrownLeft" },
-            { "LlipUp_h", "mouthUpperUpLeft" },
-            { "LlipDown_h", "mouthLowerDownLeft" },
-            { "LbrowDown_h", "browDownLeft" },
-            { "Ljaw_h", "jawLeft" },
-            { "LLbrowUp_h", "browOuterUpLeft" },
-            { "ReyeClose_h", "eyeBlinkRight" },
-            { "ReyeOpen_h", "eyeWideRight" },
-            { "Rsquint_h", "eyeSquintRight" },
-            { "RsmileClose_h", "mouthSmileRight" },
-            { "RmouthSad_h", "mouthFrownRight" },
-            { "RlipUp_h", "mouthUpperUpRight" },
-            { "RlipDown_h", "mouthLowerDownRight" },
-            { "RbrowDown_h", "browDownRight" },
-            { "Rjaw_h", "jawRight" },
-            { "RRbrowUp_h", "browOuterUpRight" },
-            { "JawFront_h", "jawForward" },
-            { "MouthOpen_h", "jawOpen" },
-            { "Kiss_h", "mouthPucker" },
-            { "AE_AA_h", "viseme_aa" },
-            { "AO_a_h", "viseme_oh" },
-            { "Ax_E_h", "viseme_E" },
-            { "UW_U_h", "viseme_ou" },
-            { "TD_I_h", "viseme_DD" },
-            { "FV_h", "viseme_FF" },
-            { "SH_CH_h", "viseme_CH" },
-            { "KG_h", "viseme_kk" },
+            { "a", "aa" }, { "i", "ih" }, { "u", "ou" }, { "e", "ee" }, { "o", "oh" }, { "joy", "happy" },
+            { "sorrow", "sad" }, { "fun", "relaxed" }, { "viseme_i", "viseme_ih" }, { "viseme_o", "viseme_oh" },
+            { "viseme_u", "viseme_ou" }, { "sil", "viseme_sil" }, { "pp", "viseme_PP" }, { "ff", "viseme_FF" },
+            { "th", "viseme_TH" }, { "dd", "viseme_DD" }, { "kk", "viseme_kk" }, { "ch", "viseme_CH" },
+            { "ss", "viseme_SS" }, { "nn", "viseme_nn" }, { "rr", "viseme_RR" }, { "mth_a", "aa" }, { "mth_i", "ih" },
+            { "mth_u", "ou" }, { "mth_e", "ee" }, { "mth_o", "oh" }, { "eye_close", "blink" },
+            { "eye_close_l", "blinkLeft" }, { "eye_close_r", "blinkRight" }, { "eye_def_c", "blink" },
+            { "all_joy", "happy" }, { "all_angry", "angry" }, { "all_sorrow", "sad" }, { "all_fun", "relaxed" },
+            { "all_surprised", "surprised" }, { "all_neutral", "neutral" }, { "eyes_closed", "blink" },
+            { "eyes_look_up", "lookUp" }, { "eyes_look_down", "lookDown" }, { "mouth_open", "aa" },
+            { "mouth_smile", "happy" }, { "eye_closed_left", "eyeBlinkLeft" }, { "eye_closed_right", "eyeBlinkRight" },
+            { "mouth_corner_pull_left", "mouthSmileLeft" }, { "mouth_corner_pull_right", "mouthSmileRight" },
+            { "mouth_closed", "mouthClose" }, { "lip_funnel", "mouthFunnel" }, { "lip_pucker", "mouthPucker" },
+            { "あ", "aa" }, { "い", "ih" }, { "う", "ou" }, { "え", "ee" }, { "お", "oh" }, { "まばたき", "blink" },
+            { "ウィンク", "blinkLeft" }, { "ウィンク右", "blinkRight" }, { "笑い", "relaxed" }, { "びっくり", "surprised" },
+            { "AA_VI_00_Sil", "viseme_sil" }, { "AA_VI_01_PP", "viseme_PP" }, { "AA_VI_02_FF", "viseme_FF" },
+            { "AA_VI_03_TH", "viseme_TH" }, { "AA_VI_04_DD", "viseme_DD" }, { "AA_VI_05_KK", "viseme_kk" },
+            { "AA_VI_06_CH", "viseme_CH" }, { "AA_VI_07_SS", "viseme_SS" }, { "AA_VI_08_nn", "viseme_nn" },
+            { "AA_VI_09_RR", "viseme_RR" }, { "AA_VI_10_aa", "viseme_aa" }, { "AA_VI_11_E", "viseme_E" },
+            { "AA_VI_12_ih", "viseme_ih" }, { "AA_VI_13_oh", "viseme_oh" }, { "AA_VI_14_ou", "viseme_ou" },
+            { "LeyeClose_h", "eyeBlinkLeft" }, { "LeyeOpen_h", "eyeWideLeft" }, { "Lsquint_h", "eyeSquintLeft" },
+            { "LsmileClose_h", "mouthSmileLeft" }, { "LmouthSad_h", "mouthFrownLeft" },
+            { "LlipUp_h", "mouthUpperUpLeft" }, { "LlipDown_h", "mouthLowerDownLeft" },
+            { "LbrowDown_h", "browDownLeft" }, { "Ljaw_h", "jawLeft" }, { "LLbrowUp_h", "browOuterUpLeft" },
+            { "ReyeClose_h", "eyeBlinkRight" }, { "ReyeOpen_h", "eyeWideRight" }, { "Rsquint_h", "eyeSquintRight" },
+            { "RsmileClose_h", "mouthSmileRight" }, { "RmouthSad_h", "mouthFrownRight" },
+            { "RlipUp_h", "mouthUpperUpRight" }, { "RlipDown_h", "mouthLowerDownRight" },
+            { "RbrowDown_h", "browDownRight" }, { "Rjaw_h", "jawRight" }, { "RRbrowUp_h", "browOuterUpRight" },
+            { "JawFront_h", "jawForward" }, { "MouthOpen_h", "jawOpen" }, { "Kiss_h", "mouthPucker" },
+            { "AE_AA_h", "viseme_aa" }, { "AO_a_h", "viseme_oh" }, { "Ax_E_h", "viseme_E" }, { "UW_U_h", "viseme_ou" },
+            { "TD_I_h", "viseme_DD" }, { "FV_h", "viseme_FF" }, { "SH_CH_h", "viseme_CH" }, { "KG_h", "viseme_kk" },
         };
 
         /// <summary>Sets of others that stand for an expression, each with its share.</summary>
@@ -154,531 +81,225 @@ namespace Mua.Motion
             new Dictionary<string, Dictionary<string, float>[]>
             {
                 { "aa", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "viseme_aa", 1f },
-                    },
-                    new Dictionary<string, float>
-                    {
-                        { "jawOpen", 0.7f },
-                    },
+                    new Dictionary<string, float> { { "viseme_aa", 1f }, },
+                    new Dictionary<string, float> { { "jawOpen", 0.7f }, },
                 } },
                 { "ih", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "viseme_ih", 1f },
-                    },
-                    new Dictionary<string, float>
-                    {
-                        { "jawOpen", 0.2f },
-                        { "mouthStretchLeft", 0.5f },
-                        { "mouthStretchRight", 0.5f },
-                        { "mouthLowerDownLeft", 0.3f },
-                        { "mouthLowerDownRight", 0.3f },
-                    },
+                    new Dictionary<string, float> { { "viseme_ih", 1f }, },
+                    new Dictionary<string, float> { { "jawOpen", 0.2f }, { "mouthStretchLeft", 0.5f },
+                    { "mouthStretchRight", 0.5f }, { "mouthLowerDownLeft", 0.3f }, { "mouthLowerDownRight", 0.3f }, },
                 } },
                 { "ou", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "viseme_ou", 1f },
-                    },
-                    new Dictionary<string, float>
-                    {
-                        { "jawOpen", 0.15f },
-                        { "mouthPucker", 0.8f },
-                        { "mouthFunnel", 0.4f },
-                    },
+                    new Dictionary<string, float> { { "viseme_ou", 1f }, },
+                    new Dictionary<string, float> { { "jawOpen", 0.15f }, { "mouthPucker", 0.8f },
+                    { "mouthFunnel", 0.4f }, },
                 } },
                 { "ee", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "viseme_E", 1f },
-                    },
-                    new Dictionary<string, float>
-                    {
-                        { "jawOpen", 0.25f },
-                        { "mouthSmileLeft", 0.3f },
-                        { "mouthSmileRight", 0.3f },
-                        { "mouthStretchLeft", 0.4f },
-                        { "mouthStretchRight", 0.4f },
-                    },
+                    new Dictionary<string, float> { { "viseme_E", 1f }, },
+                    new Dictionary<string, float> { { "jawOpen", 0.25f }, { "mouthSmileLeft", 0.3f },
+                    { "mouthSmileRight", 0.3f }, { "mouthStretchLeft", 0.4f }, { "mouthStretchRight", 0.4f }, },
                 } },
                 { "oh", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "viseme_oh", 1f },
-                    },
-                    new Dictionary<string, float>
-                    {
-                        { "jawOpen", 0.4f },
-                        { "mouthFunnel", 0.7f },
-                    },
+                    new Dictionary<string, float> { { "viseme_oh", 1f }, },
+                    new Dictionary<string, float> { { "jawOpen", 0.4f }, { "mouthFunnel", 0.7f }, },
                 } },
                 { "happy", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "mouthSmileLeft", 0.8f },
-                        { "mouthSmileRight", 0.8f },
-                        { "cheekSquintLeft", 0.5f },
-                        { "cheekSquintRight", 0.5f },
-                    },
+                    new Dictionary<string, float> { { "mouthSmileLeft", 0.8f }, { "mouthSmileRight", 0.8f },
+                    { "cheekSquintLeft", 0.5f }, { "cheekSquintRight", 0.5f }, },
                 } },
                 { "angry", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "browDownLeft", 1f },
-                        { "browDownRight", 1f },
-                        { "noseSneerLeft", 0.3f },
-                        { "noseSneerRight", 0.3f },
-                        { "mouthFrownLeft", 0.3f },
-                        { "mouthFrownRight", 0.3f },
-                    },
+                    new Dictionary<string, float> { { "browDownLeft", 1f }, { "browDownRight", 1f },
+                    { "noseSneerLeft", 0.3f }, { "noseSneerRight", 0.3f }, { "mouthFrownLeft", 0.3f },
+                    { "mouthFrownRight", 0.3f }, },
                 } },
                 { "sad", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "browInnerUp", 0.8f },
-                        { "mouthFrownLeft", 0.8f },
-                        { "mouthFrownRight", 0.8f },
-                    },
+                    new Dictionary<string, float> { { "browInnerUp", 0.8f }, { "mouthFrownLeft", 0.8f },
+                    { "mouthFrownRight", 0.8f }, },
                 } },
                 { "relaxed", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "mouthSmileLeft", 0.4f },
-                        { "mouthSmileRight", 0.4f },
-                        { "eyeSquintLeft", 0.3f },
-                        { "eyeSquintRight", 0.3f },
-                    },
+                    new Dictionary<string, float> { { "mouthSmileLeft", 0.4f }, { "mouthSmileRight", 0.4f },
+                    { "eyeSquintLeft", 0.3f }, { "eyeSquintRight", 0.3f }, },
                 } },
                 { "surprised", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "browInnerUp", 0.8f },
-                        { "browOuterUpLeft", 1f },
-                        { "browOuterUpRight", 1f },
-                        { "eyeWideLeft", 1f },
-                        { "eyeWideRight", 1f },
-                        { "jawOpen", 0.3f },
-                    },
+                    new Dictionary<string, float> { { "browInnerUp", 0.8f }, { "browOuterUpLeft", 1f },
+                    { "browOuterUpRight", 1f }, { "eyeWideLeft", 1f }, { "eyeWideRight", 1f }, { "jawOpen", 0.3f }, },
                 } },
                 { "blink", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "blinkLeft", 1f },
-                        { "blinkRight", 1f },
-                    },
-                    new Dictionary<string, float>
-                    {
-                        { "eyeBlinkLeft", 1f },
-                        { "eyeBlinkRight", 1f },
-                    },
+                    new Dictionary<string, float> { { "blinkLeft", 1f }, { "blinkRight", 1f }, },
+                    new Dictionary<string, float> { { "eyeBlinkLeft", 1f }, { "eyeBlinkRight", 1f }, },
                 } },
                 { "blinkLeft", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "eyeBlinkLeft", 1f },
-                    },
-                    new Dictionary<string, float>
-                    {
-                        { "blink", 0.5f },
-                    },
+                    new Dictionary<string, float> { { "eyeBlinkLeft", 1f }, },
+                    new Dictionary<string, float> { { "blink", 0.5f }, },
                 } },
                 { "blinkRight", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "eyeBlinkRight", 1f },
-                    },
-                    new Dictionary<string, float>
-                    {
-                        { "blink", 0.5f },
-                    },
+                    new Dictionary<string, float> { { "eyeBlinkRight", 1f }, },
+                    new Dictionary<string, float> { { "blink", 0.5f }, },
                 } },
                 { "lookUp", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "eyeLookUpLeft", 1f },
-                        { "eyeLookUpRight", 1f },
-                    },
+                    new Dictionary<string, float> { { "eyeLookUpLeft", 1f }, { "eyeLookUpRight", 1f }, },
                 } },
                 { "lookDown", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "eyeLookDownLeft", 1f },
-                        { "eyeLookDownRight", 1f },
-                    },
+                    new Dictionary<string, float> { { "eyeLookDownLeft", 1f }, { "eyeLookDownRight", 1f }, },
                 } },
                 { "lookLeft", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "eyeLookOutLeft", 1f },
-                        { "eyeLookInRight", 1f },
-                    },
+                    new Dictionary<string, float> { { "eyeLookOutLeft", 1f }, { "eyeLookInRight", 1f }, },
                 } },
                 { "lookRight", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "eyeLookInLeft", 1f },
-                        { "eyeLookOutRight", 1f },
-                    },
+                    new Dictionary<string, float> { { "eyeLookInLeft", 1f }, { "eyeLookOutRight", 1f }, },
                 } },
                 { "viseme_aa", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "aa", 1f },
-                    },
-                    new Dictionary<string, float>
-                    {
-                        { "jawOpen", 0.7f },
-                    },
+                    new Dictionary<string, float> { { "aa", 1f }, },
+                    new Dictionary<string, float> { { "jawOpen", 0.7f }, },
                 } },
                 { "viseme_ih", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "ih", 1f },
-                    },
-                    new Dictionary<string, float>
-                    {
-                        { "jawOpen", 0.2f },
-                        { "mouthStretchLeft", 0.5f },
-                        { "mouthStretchRight", 0.5f },
-                        { "mouthLowerDownLeft", 0.3f },
-                        { "mouthLowerDownRight", 0.3f },
-                    },
+                    new Dictionary<string, float> { { "ih", 1f }, },
+                    new Dictionary<string, float> { { "jawOpen", 0.2f }, { "mouthStretchLeft", 0.5f },
+                    { "mouthStretchRight", 0.5f }, { "mouthLowerDownLeft", 0.3f }, { "mouthLowerDownRight", 0.3f }, },
                 } },
                 { "viseme_ou", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "ou", 1f },
-                    },
-                    new Dictionary<string, float>
-                    {
-                        { "jawOpen", 0.15f },
-                        { "mouthPucker", 0.8f },
-                        { "mouthFunnel", 0.4f },
-                    },
+                    new Dictionary<string, float> { { "ou", 1f }, },
+                    new Dictionary<string, float> { { "jawOpen", 0.15f }, { "mouthPucker", 0.8f },
+                    { "mouthFunnel", 0.4f }, },
                 } },
                 { "viseme_E", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "ee", 1f },
-                    },
-                    new Dictionary<string, float>
-                    {
-                        { "jawOpen", 0.25f },
-                        { "mouthSmileLeft", 0.3f },
-                        { "mouthSmileRight", 0.3f },
-                        { "mouthStretchLeft", 0.4f },
-                        { "mouthStretchRight", 0.4f },
-                    },
+                    new Dictionary<string, float> { { "ee", 1f }, },
+                    new Dictionary<string, float> { { "jawOpen", 0.25f }, { "mouthSmileLeft", 0.3f },
+                    { "mouthSmileRight", 0.3f }, { "mouthStretchLeft", 0.4f }, { "mouthStretchRight", 0.4f }, },
                 } },
                 { "viseme_oh", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "oh", 1f },
-                    },
-                    new Dictionary<string, float>
-                    {
-                        { "jawOpen", 0.4f },
-                        { "mouthFunnel", 0.7f },
-                    },
+                    new Dictionary<string, float> { { "oh", 1f }, },
+                    new Dictionary<string, float> { { "jawOpen", 0.4f }, { "mouthFunnel", 0.7f }, },
                 } },
                 { "viseme_PP", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "mouthPressLeft", 0.5f },
-                        { "mouthPressRight", 0.5f },
-                        { "mouthRollLower", 0.3f },
-                        { "mouthRollUpper", 0.3f },
-                    },
+                    new Dictionary<string, float> { { "mouthPressLeft", 0.5f }, { "mouthPressRight", 0.5f },
+                    { "mouthRollLower", 0.3f }, { "mouthRollUpper", 0.3f }, },
                 } },
                 { "viseme_FF", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "jawOpen", 0.05f },
-                        { "mouthRollLower", 0.6f },
-                        { "mouthUpperUpLeft", 0.3f },
-                        { "mouthUpperUpRight", 0.3f },
-                    },
-                    new Dictionary<string, float>
-                    {
-                        { "ih", 0.2f },
-                    },
+                    new Dictionary<string, float> { { "jawOpen", 0.05f }, { "mouthRollLower", 0.6f },
+                    { "mouthUpperUpLeft", 0.3f }, { "mouthUpperUpRight", 0.3f }, },
+                    new Dictionary<string, float> { { "ih", 0.2f }, },
                 } },
                 { "viseme_TH", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "jawOpen", 0.2f },
-                        { "tongueOut", 0.3f },
-                    },
-                    new Dictionary<string, float>
-                    {
-                        { "ih", 0.3f },
-                    },
+                    new Dictionary<string, float> { { "jawOpen", 0.2f }, { "tongueOut", 0.3f }, },
+                    new Dictionary<string, float> { { "ih", 0.3f }, },
                 } },
                 { "viseme_DD", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "jawOpen", 0.15f },
-                        { "mouthLowerDownLeft", 0.3f },
-                        { "mouthLowerDownRight", 0.3f },
-                    },
-                    new Dictionary<string, float>
-                    {
-                        { "ih", 0.4f },
-                    },
+                    new Dictionary<string, float> { { "jawOpen", 0.15f }, { "mouthLowerDownLeft", 0.3f },
+                    { "mouthLowerDownRight", 0.3f }, },
+                    new Dictionary<string, float> { { "ih", 0.4f }, },
                 } },
                 { "viseme_kk", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "jawOpen", 0.2f },
-                        { "mouthStretchLeft", 0.2f },
-                        { "mouthStretchRight", 0.2f },
-                    },
-                    new Dictionary<string, float>
-                    {
-                        { "ih", 0.3f },
-                    },
+                    new Dictionary<string, float> { { "jawOpen", 0.2f }, { "mouthStretchLeft", 0.2f },
+                    { "mouthStretchRight", 0.2f }, },
+                    new Dictionary<string, float> { { "ih", 0.3f }, },
                 } },
                 { "viseme_CH", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "jawOpen", 0.1f },
-                        { "mouthFunnel", 0.5f },
-                    },
-                    new Dictionary<string, float>
-                    {
-                        { "ou", 0.4f },
-                    },
+                    new Dictionary<string, float> { { "jawOpen", 0.1f }, { "mouthFunnel", 0.5f }, },
+                    new Dictionary<string, float> { { "ou", 0.4f }, },
                 } },
                 { "viseme_SS", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "jawOpen", 0.05f },
-                        { "mouthStretchLeft", 0.4f },
-                        { "mouthStretchRight", 0.4f },
-                    },
-                    new Dictionary<string, float>
-                    {
-                        { "ih", 0.4f },
-                    },
+                    new Dictionary<string, float> { { "jawOpen", 0.05f }, { "mouthStretchLeft", 0.4f },
+                    { "mouthStretchRight", 0.4f }, },
+                    new Dictionary<string, float> { { "ih", 0.4f }, },
                 } },
                 { "viseme_nn", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "jawOpen", 0.15f },
-                        { "mouthStretchLeft", 0.1f },
-                        { "mouthStretchRight", 0.1f },
-                    },
-                    new Dictionary<string, float>
-                    {
-                        { "ih", 0.3f },
-                    },
+                    new Dictionary<string, float> { { "jawOpen", 0.15f }, { "mouthStretchLeft", 0.1f },
+                    { "mouthStretchRight", 0.1f }, },
+                    new Dictionary<string, float> { { "ih", 0.3f }, },
                 } },
                 { "viseme_RR", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "jawOpen", 0.2f },
-                        { "mouthFunnel", 0.4f },
-                    },
-                    new Dictionary<string, float>
-                    {
-                        { "ou", 0.4f },
-                    },
+                    new Dictionary<string, float> { { "jawOpen", 0.2f }, { "mouthFunnel", 0.4f }, },
+                    new Dictionary<string, float> { { "ou", 0.4f }, },
                 } },
                 { "eyeBlinkLeft", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "blinkLeft", 1f },
-                    },
-                    new Dictionary<string, float>
-                    {
-                        { "blink", 0.5f },
-                    },
+                    new Dictionary<string, float> { { "blinkLeft", 1f }, },
+                    new Dictionary<string, float> { { "blink", 0.5f }, },
                 } },
                 { "eyeBlinkRight", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "blinkRight", 1f },
-                    },
-                    new Dictionary<string, float>
-                    {
-                        { "blink", 0.5f },
-                    },
+                    new Dictionary<string, float> { { "blinkRight", 1f }, },
+                    new Dictionary<string, float> { { "blink", 0.5f }, },
                 } },
                 { "eyeWideLeft", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "surprised", 0.5f },
-                    },
+                    new Dictionary<string, float> { { "surprised", 0.5f }, },
                 } },
                 { "eyeWideRight", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "surprised", 0.5f },
-                    },
+                    new Dictionary<string, float> { { "surprised", 0.5f }, },
                 } },
                 { "eyeLookUpLeft", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "lookUp", 0.5f },
-                    },
+                    new Dictionary<string, float> { { "lookUp", 0.5f }, },
                 } },
                 { "eyeLookUpRight", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "lookUp", 0.5f },
-                    },
+                    new Dictionary<string, float> { { "lookUp", 0.5f }, },
                 } },
                 { "eyeLookDownLeft", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "lookDown", 0.5f },
-                    },
+                    new Dictionary<string, float> { { "lookDown", 0.5f }, },
                 } },
                 { "eyeLookDownRight", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "lookDown", 0.5f },
-                    },
+                    new Dictionary<string, float> { { "lookDown", 0.5f }, },
                 } },
                 { "eyeLookInLeft", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "lookRight", 0.5f },
-                    },
+                    new Dictionary<string, float> { { "lookRight", 0.5f }, },
                 } },
                 { "eyeLookInRight", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "lookLeft", 0.5f },
-                    },
+                    new Dictionary<string, float> { { "lookLeft", 0.5f }, },
                 } },
                 { "eyeLookOutLeft", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "lookLeft", 0.5f },
-                    },
+                    new Dictionary<string, float> { { "lookLeft", 0.5f }, },
                 } },
                 { "eyeLookOutRight", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "lookRight", 0.5f },
-                    },
+                    new Dictionary<string, float> { { "lookRight", 0.5f }, },
                 } },
                 { "jawOpen", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "aa", 1f },
-                    },
-                    new Dictionary<string, float>
-                    {
-                        { "viseme_aa", 1f },
-                    },
+                    new Dictionary<string, float> { { "aa", 1f }, },
+                    new Dictionary<string, float> { { "viseme_aa", 1f }, },
                 } },
                 { "mouthClose", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "aa", -1f },
-                    },
-                    new Dictionary<string, float>
-                    {
-                        { "viseme_aa", -1f },
-                    },
+                    new Dictionary<string, float> { { "aa", -1f }, },
+                    new Dictionary<string, float> { { "viseme_aa", -1f }, },
                 } },
                 { "mouthFunnel", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "oh", 1f },
-                    },
-                    new Dictionary<string, float>
-                    {
-                        { "viseme_oh", 1f },
-                    },
+                    new Dictionary<string, float> { { "oh", 1f }, },
+                    new Dictionary<string, float> { { "viseme_oh", 1f }, },
                 } },
                 { "mouthPucker", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "ou", 1f },
-                    },
-                    new Dictionary<string, float>
-                    {
-                        { "viseme_ou", 1f },
-                    },
+                    new Dictionary<string, float> { { "ou", 1f }, },
+                    new Dictionary<string, float> { { "viseme_ou", 1f }, },
                 } },
                 { "mouthSmileLeft", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "happy", 0.5f },
-                    },
+                    new Dictionary<string, float> { { "happy", 0.5f }, },
                 } },
                 { "mouthSmileRight", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "happy", 0.5f },
-                    },
+                    new Dictionary<string, float> { { "happy", 0.5f }, },
                 } },
                 { "mouthFrownLeft", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "sad", 0.5f },
-                    },
+                    new Dictionary<string, float> { { "sad", 0.5f }, },
                 } },
                 { "mouthFrownRight", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "sad", 0.5f },
-                    },
+                    new Dictionary<string, float> { { "sad", 0.5f }, },
                 } },
                 { "mouthStretchLeft", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "ih", 0.5f },
-                    },
-                    new Dictionary<string, float>
-                    {
-                        { "viseme_ih", 0.5f },
-                    },
+                    new Dictionary<string, float> { { "ih", 0.5f }, },
+                    new Dictionary<string, float> { { "viseme_ih", 0.5f }, },
                 } },
                 { "mouthStretchRight", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "ih", 0.5f },
-                    },
-                    new Dictionary<string, float>
-                    {
-                        { "viseme_ih", 0.5f },
-                    },
+                    new Dictionary<string, float> { { "ih", 0.5f }, },
+                    new Dictionary<string, float> { { "viseme_ih", 0.5f }, },
                 } },
                 { "mouthPressLeft", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "viseme_PP", 0.5f },
-                    },
+                    new Dictionary<string, float> { { "viseme_PP", 0.5f }, },
                 } },
                 { "mouthPressRight", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "viseme_PP", 0.5f },
-                    },
+                    new Dictionary<string, float> { { "viseme_PP", 0.5f }, },
                 } },
                 { "browDownLeft", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "angry", 0.5f },
-                    },
+                    new Dictionary<string, float> { { "angry", 0.5f }, },
                 } },
                 { "browDownRight", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "angry", 0.5f },
-                    },
+                    new Dictionary<string, float> { { "angry", 0.5f }, },
                 } },
                 { "tongueOut", new[] {
-                    new Dictionary<string, float>
-                    {
-                        { "viseme_TH", 1f },
-                    },
+                    new Dictionary<string, float> { { "viseme_TH", 1f }, },
                 } },
             };
     }
