@@ -8,6 +8,7 @@ LEAST_STEP, LARGEST_STEP = 2.0**-24, 1.0  # scales of halves that are packed as 
 STAGES = 5
 
 MAX_JOINTS, MAX_LAYERS, MAX_CLIPS, MAX_EXPRESSIONS = 4096, 64, 4096, 1024
+RULE_CODES = 1 << 7  # what the rules of an expression may be
 MAX_LEVELS = 8  # levels of the wavelet
 MAX_SIDE = 4096  # texels along a side of the texture
 TEXTURE_TIMES, TEXTURE_ROOM = 16, 1 << 16  # texels of the texture for each valid one, and beside

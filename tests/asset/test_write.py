@@ -14,6 +14,7 @@ from synthetic_avatar import (
     synthetic_avatar,
     with_expressions,
     with_one_sided,
+    with_rules,
     with_surface,
     with_texels,
 )
@@ -191,7 +192,7 @@ def test_a_joint_that_one_clip_translates_is_stored_for_all(tmp_path: Path) -> N
 
 @pytest.mark.parametrize("storage", ["f32", "f16", "i8", "packed"])
 def test_expressions_come_back_up_to_storage(storage: Storage) -> None:
-    avatar = with_expressions(synthetic_avatar())
+    avatar = with_rules(with_expressions(synthetic_avatar()))
     found = decode_tree(parse_checked(encode(avatar, storage=storage)))
     step = 2.0**-14 if storage == "packed" else 0  # metres, of the offsets; those of the fixture are f16 already
     assert found.expressions == avatar.expressions
@@ -200,6 +201,7 @@ def test_expressions_come_back_up_to_storage(storage: Storage) -> None:
     assert theirs
     np.testing.assert_array_equal(theirs.starts, ours.starts)
     np.testing.assert_array_equal(theirs.vertices, ours.vertices)
+    np.testing.assert_array_equal(theirs.rules, ours.rules)
     np.testing.assert_allclose(theirs.offsets, ours.offsets, rtol=0, atol=step)
     assert ours.gains is not None
     assert theirs.gains is not None
@@ -207,17 +209,19 @@ def test_expressions_come_back_up_to_storage(storage: Storage) -> None:
     np.testing.assert_array_equal(found.clips[0].expressions, avatar.clips[0].expressions)
 
 
-def test_expressions_without_light_store_none() -> None:
+@pytest.mark.parametrize("none", [None, np.zeros(7, np.float32)])
+def test_expressions_without_light_and_rules_store_none(none: Array | None) -> None:
     avatar = with_expressions(synthetic_avatar())
     held = avatar.rig.expressions
     assert held
-    for gains in (None, np.zeros(len(held.vertices), np.float32)):
-        unlit = dataclasses.replace(avatar.rig, expressions=dataclasses.replace(held, gains=gains))
-        tree = parse_checked(encode(dataclasses.replace(avatar, rig=unlit)))
-        assert "gains" not in tree["expressions"]
-        found = decode_tree(tree).rig.expressions
-        assert found
-        assert found.gains is None
+    rules = None if none is None else none[:4].astype(np.int32)
+    plain = dataclasses.replace(avatar.rig, expressions=dataclasses.replace(held, gains=none, rules=rules))
+    tree = parse_checked(encode(dataclasses.replace(avatar, rig=plain)))
+    assert not {"gains", "rules"} & tree["expressions"].keys()
+    found = decode_tree(tree).rig.expressions
+    assert found
+    assert found.gains is None
+    assert found.rules is None
 
 
 def test_what_has_no_expressions_stores_none() -> None:

@@ -202,7 +202,19 @@ def test_what_a_vrm_expression_does_besides_is_noted(tmp_path: Path) -> None:
     glb = second(with_targets(RAW, [UP, AHEAD, UP]), preset, {"blush": colours})
     notes = read(glb, tmp_path).notes
     assert "Colours and textures that an expression changes stay as they are: blush." in notes
-    assert any(note.startswith("Clips that are baked follow") and note.endswith(": happy, sad.") for note in notes)
+
+
+def test_rules_of_a_vrm_are_those_of_its_expressions_by_any_name(tmp_path: Path) -> None:
+    preset = {"happy": bind(0, 1, overrideBlink="block"), "blink": bind(1, 1, isBinary=True, overrideMouth="none")}
+    glb = second(with_targets(RAW, [UP, AHEAD, UP]), preset, {"wow": bind(2, 1, overrideBlink="blend")})
+    path = glb.save(tmp_path / "body.glb")
+    for called in ({}, {"wow": "Wow!"}):
+        held = read_surfaces(path, expression_names=called).expressions
+        assert held is not None
+        assert held.names == ("happy", "blink", called.get("wow", "wow"), "EyeBlink_L")
+        np.testing.assert_allclose(held.shown(np.array([0.1, 1, 0, 0.2])), [0.1, 0, 0, 0.2])
+        np.testing.assert_allclose(held.shown(np.array([0, 0.4, 0, 0])), [0, 0, 0, 0])
+        np.testing.assert_allclose(held.shown(np.array([0, 1, 0.1, 0])), [0, 0, 0.1, 0])
 
 
 @pytest.mark.parametrize(

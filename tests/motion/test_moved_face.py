@@ -1,4 +1,4 @@
-"""What weights of a face show of a VRM: what holds others back, what switches, and eyes that are joints."""
+"""What facial motion moves of a VRM: its expressions with their rules, and eyes that are joints."""
 
 from pathlib import Path
 from typing import Any
@@ -12,12 +12,10 @@ from mua.arrays import Array
 from mua.characters.read import read_character
 from mua.errors import InputError
 from mua.motion.load import load_motions
-from mua.motion.moved_face import face_of, held_back
+from mua.motion.moved_face import face_of
 from mua.motion.read import read_motion
 from mua.pose.clip import Clip
-from mua.scene import FaceRules
 
-NAMES = ("happy", "sad", "blink", "blinkLeft", "lookUp", "aa", "cheekPuff")
 FLOAT_BOUND = 1e-6
 REACH = {"Outer": 30.0, "Inner": 20.0, "Up": 15.0, "Down": 12.0}  # degrees
 EYES = {"eyeL": 0.03, "eyeR": -0.03}
@@ -25,44 +23,6 @@ MAPS = {"Outer": "HorizontalOuter", "Inner": "HorizontalInner", "Up": "VerticalU
 LOOK_AT = {"type": "bone"} | {
     f"rangeMap{name}": {"inputMaxValue": 90, "outputScale": REACH[way]} for way, name in MAPS.items()
 }
-
-
-def shown(rules: FaceRules, **weights: float) -> dict[str, float]:
-    """What shows of some weights, those that are not 0."""
-    given = np.array([[weights.get(name, 0.0) for name in NAMES]])
-    [found], _ = held_back(rules, NAMES, given)
-    return {name: round(float(weight), 6) for name, weight in zip(NAMES, found, strict=True) if weight}
-
-
-def test_without_rules_all_shows() -> None:
-    assert shown(FaceRules(), happy=0.4, blink=0.6, aa=1) == {"happy": 0.4, "blink": 0.6, "aa": 1}
-
-
-def test_an_expression_holds_others_back_wholly_or_by_its_weight() -> None:
-    rules = FaceRules(overrides={"happy": {"blink": "block", "mouth": "blend"}, "sad": {"mouth": "blend"}})
-    moved = {"blink": 0.8, "blinkLeft": 1.0, "aa": 0.5, "lookUp": 1.0, "cheekPuff": 1.0}
-    assert shown(rules, happy=0.25, **moved) == {"happy": 0.25, "aa": 0.375, "lookUp": 1, "cheekPuff": 1}
-    assert shown(rules, **moved) == moved
-    assert shown(rules, happy=0.5, sad=0.75, aa=1) == {"happy": 0.5, "sad": 0.75}  # together no more than all
-    look = FaceRules(overrides={"happy": {"look": "blend"}})
-    assert shown(look, happy=0.5, lookUp=1, blink=1) == {"happy": 0.5, "lookUp": 0.5, "blink": 1}
-
-
-def test_an_expression_does_not_hold_back_its_own_kind() -> None:
-    rules = FaceRules(overrides={"blinkLeft": {"blink": "block", "mouth": "block"}})
-    assert shown(rules, blinkLeft=1, blink=0.5, aa=1) == {"blinkLeft": 1, "blink": 0.5}
-
-
-def test_a_switch_shows_wholly_above_a_half_and_holds_back_as_it_shows() -> None:
-    rules = FaceRules(switched=frozenset({"happy"}), overrides={"happy": {"blink": "blend"}})
-    assert shown(rules, happy=0.5, blink=1) == {"blink": 1}
-    assert shown(rules, happy=0.51, blink=1) == {"happy": 1}
-
-
-def test_a_switch_that_is_held_back_at_all_does_not_show() -> None:
-    rules = FaceRules(switched=frozenset({"blink"}), overrides={"happy": {"blink": "blend"}})
-    assert shown(rules, happy=0.01, blink=1, blinkLeft=1) == {"happy": 0.01, "blinkLeft": 0.99}
-    assert shown(rules, blink=0.6) == {"blink": 1}
 
 
 def avatar(*, eyes: bool = False, **changes: Any) -> Glb:
@@ -108,13 +68,14 @@ def ahead(clip: Clip, skeleton: Any) -> Array:
     return np.asarray(rotation.rotate(since, np.array([0.0, 0, 1])))
 
 
-def test_a_baked_clip_follows_what_the_file_says(tmp_path: Path) -> None:
+def test_a_clip_keeps_its_weights_and_the_character_what_the_file_says(tmp_path: Path) -> None:
     path = avatar().save(tmp_path / "hero.vrm")
     clip, _ = on(path, happy=0.6, blink=1, jawOpen=0.5)
-    assert clip.expressions is not None
-    np.testing.assert_allclose(clip.expressions, [[1, 0, 0.5]])
-    clip, _ = on(path, happy=0.4, blink=1)
-    np.testing.assert_allclose(np.asarray(clip.expressions), [[0, 1, 0]])
+    np.testing.assert_allclose(np.asarray(clip.expressions), [[0.6, 1, 0.5]])
+    held = read_character(path, atlas_size=64).expressions
+    assert held is not None
+    for weights, left in (([0.6, 1, 0.5], [1, 0, 0.5]), ([0.4, 1, 0], [0, 1, 0])):
+        np.testing.assert_allclose(held.shown(np.array(weights)), left)
 
 
 def aimed(yaw: float, pitch: float) -> Array:

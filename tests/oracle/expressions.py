@@ -6,7 +6,26 @@ from oracle.motion import Pose
 from oracle.quaternions import LEAST, columns, from_columns, multiply, normalise
 
 SHORTEST, LARGEST = 0.00001, 20
+KINDS = range(3)  # blinks, looks, mouths
 C0 = 1 / (2 * np.sqrt(np.pi))
+
+
+def shown(table: Record, w: Array) -> list[float]:
+    """12.6: w' [E] of weights w."""
+    if table.rules is None:
+        return list(w)
+    codes = [[int(rule) // 4**k % 4 for k in KINDS] for rule in table.rules]
+    switches = [int(rule) // 64 % 2 == 1 for rule in table.rules]
+    u = [float(weight > 0.5) if switch else weight for weight, switch in zip(w, switches, strict=True)]
+    held = []
+    for k in KINDS:
+        wholly = [1 for weight, code in zip(u, codes, strict=True) if code[k] == 1 and weight > 0]
+        held.append(min(1, sum(wholly) + sum(weight for weight, code in zip(u, codes, strict=True) if code[k] == 2)))
+    left = []
+    for weight, code, switch in zip(u, codes, switches, strict=True):
+        own = [held[k] for k in KINDS if code[k] == 3]
+        left.append(weight * float(max(own, default=0) == 0) if switch else weight * np.prod([1 - h for h in own]))
+    return left
 
 
 def moved(avatar: Record, pose: Pose) -> Array:
@@ -14,7 +33,7 @@ def moved(avatar: Record, pose: Pose) -> Array:
     found = np.zeros_like(avatar.coarse.mean)
     table = avatar.expressions
     if table is not None and pose.weights is not None:
-        for e, weight in enumerate(pose.weights):
+        for e, weight in enumerate(shown(table, pose.weights)):
             for k in range(table.starts[e], table.starts[e + 1]):
                 found[table.vertices[k]] += weight * table.offsets[k]
     return found
@@ -25,7 +44,7 @@ def brightened(avatar: Record, pose: Pose) -> Array:
     found = np.zeros(len(avatar.coarse.mean))
     table = avatar.expressions
     if table is not None and pose.weights is not None and table.gains is not None:
-        for e, weight in enumerate(pose.weights):
+        for e, weight in enumerate(shown(table, pose.weights)):
             for k in range(table.starts[e], table.starts[e + 1]):
                 found[table.vertices[k]] += weight * table.gains[k]
     return found

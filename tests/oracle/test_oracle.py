@@ -16,6 +16,7 @@ from synthetic_avatar import (
     synthetic_clip,
     with_expressions,
     with_one_sided,
+    with_rules,
     with_texels,
 )
 
@@ -205,12 +206,14 @@ def test_coarser_levels_decode_alike(tmp_path: Path, wavelet: str, level: int) -
 
 @pytest.mark.parametrize("level", [0, 1, 2])
 @pytest.mark.parametrize("storage", STORAGES)
-def test_expressions_move_a_face_alike(tmp_path: Path, storage: Storage, level: int) -> None:
+@pytest.mark.parametrize("ruled", [False, True])
+def test_expressions_move_a_face_alike(tmp_path: Path, storage: Storage, level: int, ruled: bool) -> None:
     """At every level of detail, with the weights of a clip of another rate."""
     path = tmp_path / "a.muaavatar"
     avatar = turned_avatar(remove_heading=True)
     one_sided = np.random.default_rng(level).random(len(avatar.rig.texels.texels)) < 0.9
-    write(path, with_expressions(with_one_sided(avatar, one_sided)), storage=storage)
+    made = with_expressions(with_one_sided(avatar, one_sided))
+    write(path, with_rules(made) if ruled else made, storage=storage)
     assert_decodes_alike(path, frames=3, level=level)
     weights = [pose.weights for pose in motion.poses(file.load(path), file.load(path).clips[0])]
     assert all(weight is not None and weight.any() for weight in weights)

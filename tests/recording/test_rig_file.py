@@ -4,32 +4,34 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from synthetic_avatar import synthetic_avatar, with_expressions
+import pytest
+from synthetic_avatar import synthetic_avatar, with_expressions, with_rules
 
 from mua.recording.rig_file import read_rig, rig_hash, write_rig
 
 
 def test_expressions_come_back(tmp_path: Path) -> None:
-    rig = with_expressions(synthetic_avatar()).rig
+    rig = with_rules(with_expressions(synthetic_avatar())).rig
     write_rig(tmp_path / "rig.npz", rig)
     found = read_rig(tmp_path / "rig.npz")
     assert found.expressions
     assert rig.expressions
     assert found.expressions.names == rig.expressions.names
-    for name in ("starts", "vertices", "offsets", "gains"):
+    for name in ("starts", "vertices", "offsets", "gains", "rules"):
         np.testing.assert_array_equal(getattr(found.expressions, name), getattr(rig.expressions, name))
     assert rig_hash(found) == rig_hash(rig)
 
 
-def test_expressions_without_light_have_none_and_another_hash(tmp_path: Path) -> None:
-    rig = with_expressions(synthetic_avatar()).rig
+@pytest.mark.parametrize("part", ["gains", "rules"])
+def test_expressions_without_light_or_rules_have_none_and_another_hash(tmp_path: Path, part: str) -> None:
+    rig = with_rules(with_expressions(synthetic_avatar())).rig
     assert rig.expressions
-    unlit = replace(rig, expressions=replace(rig.expressions, gains=None))
-    write_rig(tmp_path / "rig.npz", unlit)
+    without = replace(rig, expressions=replace(rig.expressions, **{part: None}))
+    write_rig(tmp_path / "rig.npz", without)
     found = read_rig(tmp_path / "rig.npz").expressions
     assert found
-    assert found.gains is None
-    assert rig_hash(unlit) != rig_hash(rig)
+    assert getattr(found, part) is None
+    assert rig_hash(without) != rig_hash(rig)
 
 
 def test_a_rig_without_expressions_has_none_and_another_hash(tmp_path: Path) -> None:

@@ -48,6 +48,8 @@ def test_part_of_the_mesh_moves_as_in_the_whole(expressions: Expressions, target
     assert np.array_equal(part.displacement(weights, vertices=25), whole[kept])
     whole = expressions.brightening(weights, vertices=VERTICES)
     assert np.array_equal(part.brightening(weights, vertices=25), whole[kept])
+    ruled = replace(expressions, rules=np.array([1, 0, 3], np.int32)).at(kept)
+    assert np.array_equal(ruled.shown(weights), [1, 0.5, 0])
     for first, last in zip(part.starts[:-1], part.starts[1:], strict=True):
         assert (np.diff(part.vertices[first:last]) > 0).all()
 

@@ -118,6 +118,7 @@ TABLES = {
         Field("vertices", "Tensor", required=True),
         Field("offsets", "Tensor", required=True),
         Field("gains", "Tensor"),
+        Field("rules", "Tensor"),
     ),
     "Avatar": (
         Field("version_major", "ushort"),

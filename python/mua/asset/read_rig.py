@@ -7,7 +7,7 @@ import numpy as np
 from mua.arrays import Array
 from mua.asset.flatbuffer import MAX_BYTES, FormatError, Tree, refuse
 from mua.asset.tensors import indices, reals, unit_quaternions
-from mua.limits import BARYCENTRIC_SLACK, BIND_BOUND, LARGEST, MAX_INFLUENCES, WEIGHT_BOUND
+from mua.limits import BARYCENTRIC_SLACK, BIND_BOUND, LARGEST, MAX_INFLUENCES, RULE_CODES, WEIGHT_BOUND
 from mua.pose.skeleton import Skeleton
 from mua.rig.character import Mesh
 from mua.rig.expressions import Expressions
@@ -162,4 +162,5 @@ def with_expressions(rig: Rig, tree: Tree) -> Rig:
         refuse("expressions.vertices", "vertices must ascend within an expression")
     offsets = reals(table["offsets"], "expressions.offsets", (len(moved), 3))
     gains = reals(table["gains"], "expressions.gains", (len(moved),)) if "gains" in table else None
-    return replace(rig, expressions=Expressions(names, starts, moved, offsets, gains))
+    rules = indices(table["rules"], "expressions.rules", (len(names),), 0, RULE_CODES) if "rules" in table else None
+    return replace(rig, expressions=Expressions(names, starts, moved, offsets, gains, rules))

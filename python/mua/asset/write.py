@@ -135,6 +135,8 @@ def _expressions(expressions: Expressions | None, element: Element) -> Tree:
     }
     if expressions.gains is not None and expressions.gains.any():
         table["gains"] = pack(expressions.gains, _half(element))
+    if expressions.rules is not None and expressions.rules.any():
+        table["rules"] = pack_indices(expressions.rules)
     return {"expressions": table}
 
 

@@ -159,16 +159,17 @@ def express(
     texture: Array,  # [N, 23] raw channels at the valid texels
     weights: Array | None,  # [E] 0 to 1; None: all 0
 ) -> tuple[Array, Array]:
-    """Vertices and texture with the expressions; the very same where all weights are 0."""
+    """Vertices and texture with the expressions, as rules hold these back; the very same where all weights are 0."""
     if rig.expressions is None or weights is None or not weights.any():
         return canonical, texture
-    moved = rig.expressions.displacement(weights.astype(canonical.dtype), vertices=len(canonical))
+    weights = rig.expressions.shown(weights).astype(canonical.dtype)
+    moved = rig.expressions.displacement(weights, vertices=len(canonical))
     faces, texels = rig.mesh.faces, rig.texels
     starts, stars = stars_of(faces, len(canonical))
     bends = bend_vertices(bend_triangles(canonical, moved, faces), starts, stars)
     barycentrics = texels.barycentrics.astype(canonical.dtype, copy=False)
     corners = faces[texels.triangles]
-    gains = rig.expressions.brightening(weights.astype(canonical.dtype), vertices=len(canonical))
+    gains = rig.expressions.brightening(weights, vertices=len(canonical))
     texture = brighten_texels(gains, corners, barycentrics, bend_texels(bends, corners, barycentrics, texture))
     return canonical + moved, texture
 

@@ -222,7 +222,8 @@ def _merge(scene: Scene, bind: Bind) -> _Mesh:
         vertex_count += len(vertices)
         uv_count += len(part.uv)
     whole = {name: np.concatenate(column) for name, column in columns.items()}
-    expressions, idle = joined_targets(targets, size=float(np.ptp(whole["vertices"], axis=0).max()))
+    size = float(np.ptp(whole["vertices"], axis=0).max())
+    expressions, idle = joined_targets(targets, size=size, said=scene.face_rules)
     return _Mesh(**whole, expressions=expressions, notes=(*notes, *idle))
 
 

@@ -1,7 +1,6 @@
-"""What facial motion moves of a character: expressions, as a VRM holds them back, and joints of eyes that gaze turns.
+"""What facial motion moves of a character: expressions, and joints of eyes that gaze turns.
 
-Rules and range maps: https://github.com/vrm-c/vrm-specification/blob/master/specification/VRMC_vrm-1.0/expressions.md
-and lookAt.md beside it.
+Range maps: https://github.com/vrm-c/vrm-specification/blob/master/specification/VRMC_vrm-1.0/lookAt.md
 """
 
 from collections.abc import Sequence
@@ -13,15 +12,13 @@ from mua import rotation
 from mua.arrays import Array
 from mua.pose.clip import Clip
 from mua.pose.expression_names import match_expressions
+from mua.pose.expression_rules import LOOKS, held_back
 from mua.pose.expression_vocabulary import known_expression
 from mua.rig.character import Character
-from mua.scene import NO_RULES, FaceRules
 
 _SIDES = ("Left", "Right")
 _WAYS = ("Out", "In", "Up", "Down")
 _GAZE = tuple(f"eyeLook{way}{side}" for side in _SIDES for way in _WAYS)  # ARKit's
-_LOOKS = ("lookUp", "lookDown", "lookLeft", "lookRight")
-_KINDS = {"blink": ("blink", "blinkLeft", "blinkRight"), "look": _LOOKS, "mouth": ("aa", "ih", "ou", "ee", "oh")}
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,7 +35,7 @@ class MovedFace:
     """The expressions of a character that facial motion moves, and what else follows it."""
 
     names: tuple[str, ...] = ()  # E
-    rules: FaceRules = NO_RULES
+    rules: Array | None = None  # [E] of the expressions (mua.pose.expression_rules)
     eyes: tuple[Eye, ...] = ()  # left, right; none where expressions show the gaze
 
     def shares(self, source: Sequence[str]) -> Array:
@@ -50,11 +47,13 @@ class MovedFace:
         clip: Clip,
         weights: Array,  # [F, E + gaze]
     ) -> Clip:
-        """The clip with these weights of its expressions, and its eyes turned by those of gaze."""
-        count = len(self.names)
-        shown, factors = held_back(self.rules, self.names, weights[:, :count])
-        clip = replace(clip, expressions=shown if shown.any() else None)
-        return turned(clip, self.eyes, weights[:, count:] * factors["look"][:, None]) if self.eyes else clip
+        """The clip with these weights of its expressions, and its eyes turned by what shows of those of gaze."""
+        own, gaze = np.split(weights, [len(self.names)], axis=1)
+        clip = replace(clip, expressions=own if own.any() else None)
+        if not self.eyes:
+            return clip
+        _, held = held_back(self.rules, own)
+        return turned(clip, self.eyes, gaze * (1 - held["look"][:, None]))
 
 
 NO_FACE = MovedFace()
@@ -62,40 +61,20 @@ NO_FACE = MovedFace()
 
 def face_of(character: Character) -> MovedFace:
     """What facial motion moves of a character that was read from a file."""
-    names = () if character.expressions is None else character.expressions.names
+    held = character.expressions
+    names, rules = ((), None) if held is None else (held.names, held.rules)
     if character.source is None:
-        return MovedFace(names)
-    rules, nodes = character.source.scene.face_rules, character.source.nodes.tolist()
-    joints = [nodes.index(node) for node in rules.eyes if node in nodes]
-    shown = {known_expression(name) for name in names} & {*_GAZE, *_LOOKS}
+        return MovedFace(names, rules)
+    looks, nodes = character.source.scene.face_rules, character.source.nodes.tolist()
+    joints = [nodes.index(node) for node in looks.eyes if node in nodes]
+    shown = {known_expression(name) for name in names} & {*_GAZE, *LOOKS}
     if len(joints) != len(_SIDES) or shown:
         return MovedFace(names, rules)
     turned, at = character.skeleton.world(character.skeleton.bind_rotations, character.skeleton.bind_translations)
     left, right = sorted(joints, key=lambda joint: -at[joint, 0])  # it faces +Z
-    reach = np.array([rules.reach[way] for way in _WAYS])
+    reach = np.array([looks.reach[way] for way in _WAYS])
     eyes = tuple(Eye(joint, turned[character.skeleton.parents[joint]], reach) for joint in (left, right))
     return MovedFace(names, rules, eyes)
-
-
-def held_back(
-    rules: FaceRules,
-    names: Sequence[str],  # [E]
-    weights: Array,  # [F, E] 0 to 1
-) -> tuple[Array, dict[str, Array]]:
-    """The weights [F, E] that show, and what is left [F] of blinks, looks and mouths under what holds them back."""
-    switched = np.array([name in rules.switched for name in names], bool)
-    shown = np.where(switched, weights > 0.5, weights).astype(weights.dtype)
-    held = {kind: np.zeros(len(weights)) for kind in _KINDS}
-    for column, name in enumerate(names):
-        for kind, how in rules.overrides.get(name, {}).items():
-            if name not in _KINDS[kind]:
-                held[kind] += shown[:, column] > 0 if how == "block" else shown[:, column]
-    left = {kind: 1 - np.minimum(sums, 1) for kind, sums in held.items()}
-    for column, name in enumerate(names):
-        for kind in (kind for kind, own in _KINDS.items() if name in own):
-            whole = left[kind] == 1
-            shown[:, column] *= whole if switched[column] else left[kind]
-    return shown, left
 
 
 def turned(

@@ -152,9 +152,11 @@ class AvatarFrame:
         read, outside = read_components(avatar.components, descriptor)
         channels.outside = float(outside)
         channels.components.write(read.astype(np.float32))
-        channels.expressive = expressions is not None and bool(expressions.any())
-        if expressions is not None:
-            channels.weights.write(expressions.astype(np.float32))
+        held = avatar.rig.expressions
+        shown = None if expressions is None or held is None else held.shown(expressions)
+        channels.expressive = shown is not None and bool(shown.any())
+        if shown is not None:
+            channels.weights.write(shown.astype(np.float32))
 
     def _write_pose(self, rotations: Array, translations: Array, place: Array) -> None:
         avatar, skeleton = self.avatar.avatar, self.avatar.avatar.rig.skeleton

@@ -21,6 +21,7 @@ NAMES = (
 )
 EXPRESSIONS = tuple(f"expression_{part}" for part in ("names", "starts", "vertices", "offsets"))  # where there are any
 GAINS = "expression_gains"  # where light is known
+RULES = "expression_rules"  # where an expression has any
 
 
 def rig_hash(rig: Rig) -> str:
@@ -39,7 +40,7 @@ def write_rig(path: Path, rig: Rig) -> None:
 
 def read_rig(path: Path) -> Rig:
     """Raises InputError for a file that is missing, damaged or lacks an array."""
-    return _rig(read_npz(path, NAMES, optional=(*EXPRESSIONS, GAINS)))
+    return _rig(read_npz(path, NAMES, optional=(*EXPRESSIONS, GAINS, RULES)))
 
 
 def _arrays(rig: Rig) -> dict[str, Array]:
@@ -68,8 +69,8 @@ def _expression_arrays(expressions: Expressions | None) -> dict[str, Array]:
     if expressions is None:
         return {}
     parts = (np.array(expressions.names), expressions.starts, expressions.vertices, expressions.offsets)
-    lit = {} if expressions.gains is None else {GAINS: expressions.gains}
-    return dict(zip(EXPRESSIONS, parts, strict=True)) | lit
+    more = {GAINS: expressions.gains, RULES: expressions.rules}
+    return dict(zip(EXPRESSIONS, parts, strict=True)) | {name: a for name, a in more.items() if a is not None}
 
 
 def _rig(a: dict[str, Array]) -> Rig:
@@ -88,4 +89,4 @@ def _expressions(a: dict[str, Array]) -> Expressions | None:
     if not all(name in a for name in EXPRESSIONS):
         return None
     names, starts, vertices, offsets = (a[name] for name in EXPRESSIONS)
-    return Expressions(tuple(str(name) for name in names), starts, vertices, offsets, a.get(GAINS))
+    return Expressions(tuple(str(name) for name in names), starts, vertices, offsets, a.get(GAINS), a.get(RULES))

@@ -1,10 +1,11 @@
 """Expressions: what moves a face besides its joints, as linear targets over the vertices of a mesh."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from mua.arrays import Array
+from mua.pose.expression_rules import held_back
 
 
 @dataclass(frozen=True, eq=False)
@@ -19,6 +20,7 @@ class Expressions:
     vertices: Array  # [P] int32 of the mesh, ascending within an expression
     offsets: Array  # [P, 3] float32, metres
     gains: Array | None = None  # [P] float32: how much brighter colours there become, a share of them; None: all 0
+    rules: Array | None = None  # [E] int32 of mua.pose.expression_rules; None: all 0
 
     def __len__(self) -> int:
         return len(self.names)
@@ -28,6 +30,13 @@ class Expressions:
         """Offset and gain [P, 4] of each entry."""
         gains = np.zeros(len(self.vertices), np.float32) if self.gains is None else self.gains
         return np.column_stack([self.offsets, gains])
+
+    def shown(
+        self,
+        weights: Array,  # [..., E] 0 to 1
+    ) -> Array:
+        """The weights [..., E] that show, as the rules hold them back; given these again, less may show."""
+        return held_back(self.rules, weights)[0]
 
     def displacement(
         self,
@@ -64,8 +73,8 @@ class Expressions:
         order = np.lexsort((at, expression))
         order = order[at[order] >= 0]
         counts = np.bincount(expression[order], minlength=len(self))
-        return Expressions(
-            names=self.names,
+        return replace(
+            self,
             starts=np.concatenate([[0], np.cumsum(counts)]).astype(np.int32),
             vertices=at[order].astype(np.int32),
             offsets=self.offsets[order],

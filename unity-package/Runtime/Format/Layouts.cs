@@ -106,7 +106,8 @@ namespace Mua.Format
             new Field("starts", Kind.Table, required: true, table: Tensor),
             new Field("vertices", Kind.Table, required: true, table: Tensor),
             new Field("offsets", Kind.Table, required: true, table: Tensor),
-            new Field("gains", Kind.Table, table: Tensor));
+            new Field("gains", Kind.Table, table: Tensor),
+            new Field("rules", Kind.Table, table: Tensor));
 
         public static readonly Layout Avatar = new Layout(
             new Field("version_major", Kind.U16),

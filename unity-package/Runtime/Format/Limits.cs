@@ -17,6 +17,7 @@ namespace Mua.Format
         public const int MaxLayers = 64;
         public const int MaxClips = 4096;
         public const int MaxExpressions = 1024;
+        public const int RuleCodes = 128;
         public const int MaxLevels = 8;
         public const int MaxSide = 4096;
         public const int TextureTimes = 16;

@@ -8,10 +8,6 @@ from mua.characters.gltf.document import Document
 from mua.characters.messages import Messages
 
 _COLOURS = "Colours and textures that an expression changes stay as they are: {}."
-_RULED = (
-    "Clips that are baked follow what the file says of these expressions (switched at 0.5, or holding back blinks, "
-    "looks and mouths); weights that a player is given show as they are: {}."
-)
 _HOLDING = {"blink": "overrideBlink", "look": "overrideLookAt", "mouth": "overrideMouth"}
 
 
@@ -103,8 +99,6 @@ def _expression(document: Document, name: str, entry: dict[str, Any], at: str, m
     for kind, how in overrides.items():
         if how not in ("block", "blend"):
             raise document.error(f"{at}.{_HOLDING[kind]} is {how}, expected none, block or blend")
-    if switched or overrides:
-        messages.add(_RULED, name)
     return VrmExpression(name, tuple(binds), by_mesh, switched, overrides)
 
 

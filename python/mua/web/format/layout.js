@@ -103,6 +103,7 @@ export const TABLES = {
     { name: "vertices", kind: "Tensor", required: true },
     { name: "offsets", kind: "Tensor", required: true },
     { name: "gains", kind: "Tensor" },
+    { name: "rules", kind: "Tensor" },
   ],
   Avatar: [
     { name: "version_major", kind: "ushort" },

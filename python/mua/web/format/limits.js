@@ -13,6 +13,7 @@ export const MAX_JOINTS = 4096;
 export const MAX_LAYERS = 64;
 export const MAX_CLIPS = 4096;
 export const MAX_EXPRESSIONS = 1024;
+export const RULE_CODES = 128;
 export const MAX_LEVELS = 8;
 export const MAX_SIDE = 4096;
 export const TEXTURE_TIMES = 16;

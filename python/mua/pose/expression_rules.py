@@ -1,0 +1,56 @@
+"""Which expressions hold others back, and which are switches: section 12.6 of schemas/README.md.
+
+Rules of a face are a number for each expression, as a file stores them: two bits each for blinks, looks and mouths, one
+for switches. What they mean is VRM's:
+https://github.com/vrm-c/vrm-specification/blob/master/specification/VRMC_vrm-1.0/expressions.md
+Browsers and Unity follow them alike: python/mua/web/rules.js, unity-package/Runtime/Motion/ExpressionRules.cs.
+"""
+
+from collections.abc import Mapping, Sequence, Set
+
+import numpy as np
+
+from mua.arrays import Array
+
+LOOKS = ("lookUp", "lookDown", "lookLeft", "lookRight")
+KINDS = {"blink": ("blink", "blinkLeft", "blinkRight"), "look": LOOKS, "mouth": ("aa", "ih", "ou", "ee", "oh")}
+HOLDS = {"block": 1, "blend": 2}  # a kind, while the expression shows or by its weight
+OF_KIND = 3
+SWITCH = 1 << 2 * len(KINDS)
+THRESHOLD = 0.5  # above which a switch shows
+
+
+def rules_of(
+    names: Sequence[str],  # [E]
+    switched: Set[str],
+    overrides: Mapping[str, Mapping[str, str]],  # expression to kinds that it holds back: "block" or "blend"
+) -> Array | None:
+    """The rules [E] int32 of expressions; None where none is a switch or holds anything back."""
+    rules = np.zeros(len(names), np.int32)
+    if not any(name in switched or overrides.get(name) for name in names):
+        return None
+    for row, name in enumerate(names):
+        held = overrides.get(name, {})
+        for number, (kind, own) in enumerate(KINDS.items()):
+            rules[row] |= (OF_KIND if name in own else HOLDS.get(held.get(kind, ""), 0)) << 2 * number
+        rules[row] |= SWITCH * (name in switched)
+    return rules
+
+
+def held_back(
+    rules: Array | None,  # [E] int32; None: all 0
+    weights: Array,  # [..., E] 0 to 1
+) -> tuple[Array, dict[str, Array]]:
+    """The weights [..., E] that show, and how much [...] blinks, looks and mouths are held back, 0 to 1."""
+    if rules is None:
+        return weights, {kind: np.zeros(weights.shape[:-1]) for kind in KINDS}
+    switched, given = rules & SWITCH != 0, weights.astype(np.float64)
+    own = np.where(switched, given > THRESHOLD, given)
+    shown, held = own.copy(), {}
+    for number, kind in enumerate(KINDS):
+        role = rules >> 2 * number & OF_KIND
+        amounts = np.where(role == HOLDS["block"], own > 0, np.where(role == HOLDS["blend"], own, 0))
+        held[kind] = np.minimum(amounts.sum(axis=-1), 1)
+        left = np.where(switched, held[kind][..., None] == 0, 1 - held[kind][..., None])
+        shown = np.where(role == OF_KIND, shown * left, shown)
+    return shown.astype(weights.dtype), held
