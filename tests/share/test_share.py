@@ -34,7 +34,17 @@ from mua.share.single import in_order
 BYTES = bytes(range(256)) * 4
 AUTHORITY = "127.0.0.1"
 ON_DEMAND = (  # modules that no page needs before it shows an avatar
-    *("names/", "retarget/", "worker.js", "expressing.js", "wgsl/expressions.js", "vr.js", "headset.js", "picture.js"),
+    *(
+        "names/",
+        "retarget/",
+        "worker.js",
+        "expressing.js",
+        "rules.js",
+        "wgsl/expressions.js",
+        "vr.js",
+        "headset.js",
+        "picture.js",
+    ),
     *("anatomy.js", "surface_mesh.js", "wgsl/skeleton.js", "wgsl/surface.js"),
 )
 

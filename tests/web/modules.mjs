@@ -4,7 +4,7 @@
 //                  and the most bytes that this process has taken by then
 //   measured RUNS  of a file that is read so often: processor seconds of each, and the most bytes that the first took
 //   values FRAMES  of the file's first clip, those frames: descriptors, components, joints, boxes; and what the kernels read
-//   expressions FRAMES  of a file: their names, what they move, the reach at every level, weights at frames of the first clip
+//   expressions FRAMES  of a file: their names, what they move, the reach at every level, weights at frames of the first clip and what shows
 //   stages STEP    of a file that arrives in such steps: how much was there, and what it shows, or code and field of the fault
 //   soon TOTAL BYTES...  whether the rest of so many bytes is expected soon, after so many more every 100 ms; 0: none came
 //   played CHANGES of a file: clip, time, frame, next frame and box after each change, such as ["speed", 2] or ["advance", 40]
@@ -15,6 +15,7 @@
 //   retarget       of a skeleton's file, and a motion's: the clip and notes, or the sentence that says what is wrong
 //   live           of a skeleton's file and a rig's, with poses of the latter: the avatar's
 //   names          of a file of pairs, an avatar's names of expressions and a source's: the shares of each
+//   rules          of a file of pairs, rules of expressions and weights: what shows of the weights
 //   numbers        half floats, and numbers as sentences have them
 
 import "./strict_inflate.mjs";
@@ -45,6 +46,7 @@ import { texelTiles, texelWords, upsamplingTaps } from "../../python/mua/web/pre
 import { rolesOf } from "../../python/mua/web/retarget/joint_names.js";
 import { readClip } from "../../python/mua/web/retarget/read.js";
 import { follow } from "../../python/mua/web/retarget/rig.js";
+import { heldBack } from "../../python/mua/web/rules.js";
 import { DecodeSchedule } from "../../python/mua/web/schedule.js";
 import { skinning, world } from "../../python/mua/web/skeleton.js";
 import { surfaceMesh } from "../../python/mua/web/surface_mesh.js";
@@ -123,7 +125,9 @@ function expressed(avatar, frames) {
   const textures = [texture, ...avatar.texels.levels.map(() => (texture = coarserTexture(avatar, texture)))];
   const reach = textures.map(({ triangles }) => lists(reachOf(targets.vertices, template.faces, triangles)));
   const weights = frames.map((frame) => list(sample(skeleton, clips[0], frame, encoding.rate).expressions));
-  return { names: expressions, targets: lists(targets), reach, weights };
+  const { rules } = avatar.targets;
+  const shown = weights.map((given) => list(rules ? heldBack(rules, Float32Array.from(given)) : given));
+  return { names: expressions, targets: lists(targets), reach, weights, shown };
 }
 
 /** What plays after each change. */
@@ -316,6 +320,9 @@ if (what === "roles")
       rolesOf({ ...named, parents: Int32Array.from(parents) }),
     ),
   );
+if (what === "rules")
+  for (const [rules, weights] of JSON.parse(readFileSync(given[0])))
+    say(list(heldBack(Int32Array.from(rules), Float32Array.from(weights))));
 if (what === "names")
   for (const [names, source] of JSON.parse(readFileSync(given[0]))) say(list(matchExpressions(names, source)));
 if (what === "retarget") say(await retargeted(skeletonOf(given[0]), given[1], JSON.parse(given[2] ?? "{}")));

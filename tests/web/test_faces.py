@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from synthetic_avatar import synthetic_avatar, with_expressions, with_surface
+from synthetic_avatar import synthetic_avatar, with_expressions, with_rules, with_surface
 from web.browser import Page
 from web.engine import LEAST_PSNR, SHOWN, SPLATS, Open, desktop, load, opened, psnr, screenshot, show
 from web.test_set_pose import CLOCK, pose_of
@@ -123,3 +123,24 @@ def test_weights_of_0_give_the_bytes_of_the_avatar_without(opened: Open, face: P
         assert [a == b for a, b in zip(without, channels(page, 1), strict=True)] == [same, same]
     page.evaluate("avatar.setExpressions(null)")
     assert channels(page, 1) == by_clip
+
+
+def test_rules_of_a_file_hold_back_what_a_page_sets_over_its_clip(opened: Open) -> None:
+    """To the bytes of an avatar without rules that is given what they leave; a switch holds back the clip's blink."""
+    ruled, rate = with_rules(AVATAR), AVATAR.encoding.rate
+    assert ruled.rig.expressions
+    clip = resample(AVATAR.clips[0], rate).expressions
+    assert clip is not None
+    page = opened(a=encode(ruled, storage="i8"), b=encode(AVATAR, storage="i8"))
+    page.evaluate(READ)
+    assert load(page, '"b.muaavatar"') == load(page) == ""
+    show(page, SPLATS, FRAME, rate)
+    over = clip[FRAME] * [1, 1, 1, 0] + [0, 0, 0, 0.75]
+    for given, weights in ((named(WEIGHTS), WEIGHTS), (json.dumps({"Mund auf": 0.75}), over)):
+        left = ruled.rig.expressions.shown(np.array(weights, np.float32)).astype(float)
+        assert (left != weights).sum() >= 2
+        page.evaluate(f"player.avatars[1].setExpressions({given})")
+        page.evaluate(f"player.avatars[0].setExpressions({named(weights)})")
+        assert channels(page, 1) != channels(page, 0)
+        page.evaluate(f"player.avatars[0].setExpressions({named(left.tolist())})")
+        assert channels(page, 1) == channels(page, 0)

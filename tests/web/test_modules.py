@@ -12,7 +12,15 @@ import pytest
 from damaged import DAMAGED
 from malformed import EXPRESSIVE, MALFORMED, crowded
 from recent_node import NEEDS_NODE
-from synthetic_avatar import sparse_avatar, synthetic_avatar, with_expressions, with_random_poses, with_surface
+from rule_cases import cases
+from synthetic_avatar import (
+    sparse_avatar,
+    synthetic_avatar,
+    with_expressions,
+    with_random_poses,
+    with_rules,
+    with_surface,
+)
 from tree_edits import edited
 from turn_scenarios import decided, run, timed, wander, written
 from unpackable import UNPACKABLE
@@ -34,6 +42,7 @@ from mua.player.overlays import ground_height, shadow_area
 from mua.player.surface import surface_mesh
 from mua.pose.components import read_components
 from mua.pose.descriptor import describe_window
+from mua.pose.expression_rules import held_back
 from mua.pose.resample import resample
 from mua.rig.bounds import frame_boxes
 
@@ -225,9 +234,9 @@ def test_coarser_levels_are_those_of_python(tmp_path: Path, made: str) -> None:
 
 @pytest.mark.parametrize("storage", ["f32", "packed"])
 def test_expressions_are_those_of_python(tmp_path: Path, storage: Any) -> None:
-    """What a thread for each vertex reads, which texels are in reach at every level, and the weights of a clip."""
+    """What a thread for each vertex reads, which texels are in reach at every level, weights of a clip, what shows."""
     path = tmp_path / "a.muaavatar"
-    write(path, faster(with_expressions(sparse_avatar(2))), storage=storage)
+    write(path, faster(with_rules(with_expressions(sparse_avatar(2)))), storage=storage)
     avatar, [found] = read(path), node("expressions", path, *FRAMES)
     held = avatar.rig.expressions
     assert held is not None
@@ -243,6 +252,15 @@ def test_expressions_are_those_of_python(tmp_path: Path, storage: Any) -> None:
     clip = resample(avatar.clips[0], avatar.encoding.rate)
     assert clip.expressions is not None
     np.testing.assert_allclose(found["weights"], clip.expressions[FRAMES], rtol=0, atol=ROUNDED)
+    np.testing.assert_allclose(found["shown"], held.shown(clip.expressions[FRAMES]), rtol=0, atol=ROUNDED)
+    assert found["shown"] != found["weights"]
+
+
+def test_rules_leave_of_any_weights_what_they_leave_in_the_package(tmp_path: Path) -> None:
+    file = tmp_path / "cases.json"
+    file.write_text(json.dumps([(rules.tolist(), weights.tolist()) for rules, weights in cases()]))
+    for (rules, weights), found in zip(cases(), node("rules", file), strict=True):
+        np.testing.assert_allclose(found, held_back(rules, weights)[0], rtol=0, atol=ROUNDED)
 
 
 def test_weights_count_among_what_clips_gain(tmp_path: Path) -> None:

@@ -202,10 +202,11 @@ def test_the_player_is_small() -> None:
         (["vr.js"], 10_000),
         (["anatomy.js"], 6_500),
         (["expressing.js"], 7_000),
+        (["rules.js"], 700),
         (["names/face.js"], 5_500),
         (["picture.js"], 1_000),
     ],
-    ids=["motion", "headset", "geometry and skeleton", "expressions", "names", "screenshot"],
+    ids=["motion", "headset", "geometry and skeleton", "expressions", "rules", "names", "screenshot"],
 )
 def test_what_is_loaded_on_demand_is_small(roots: list[str], largest: int) -> None:
     assert 0 < compressed(needed(*roots) - needed(*FIRST)) < largest

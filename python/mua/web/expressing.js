@@ -11,7 +11,14 @@ import { BendTexels, BendTriangles, BendVertices, SumTargets } from "./wgsl/expr
 
 const EXPRESSED = 64; // vertices, triangles or texels of a group
 const BEND = 48; // bytes of a bent triangle or vertex
+/** @type {typeof import("./rules.js").heldBack | null} */
+let heldBack = null; // fetched for avatars that have rules
 export const KERNELS = { SumTargets, BendTriangles, BendVertices, BendTexels };
+
+/** Fetch what else the expressions of an avatar need. */
+export async function fetchRules(/** @type {Avatar} */ { targets }) {
+  if (targets.rules) ({ heldBack } = await import("./rules.js"));
+}
 
 export class Expressing {
   constructor(/** @type {Memory} */ memory, /** @type {Avatar} */ avatar) {
@@ -35,6 +42,12 @@ export class Expressing {
       triangle_bends: memory.buffer(BEND * this.triangleCount, "triangle_bends"),
       vertex_bends: memory.buffer(BEND * this.bentCount, "vertex_bends"),
     };
+  }
+
+  /** The weights [E] that show of those that a clip and a page set. */
+  shown(/** @type {Float32Array} */ weights) {
+    const { rules } = this.avatar.targets;
+    return rules && heldBack ? heldBack(rules, weights) : weights;
   }
 
   /** Texels of a level that expressions may bend, [K, 2] with the place of their triangle. */

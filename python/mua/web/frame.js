@@ -100,8 +100,9 @@ export class AvatarFrame {
     channels.outside = outside;
     this.device.write(channels.components, Float32Array.from(held));
     const [{ expressions }] = window;
-    channels.expressive = expressions?.some((weight) => weight !== 0) ?? false;
-    if (expressions && channels.expressive) this.device.write(channels.weights, expressions);
+    const shown = expressions && this.buffers.expressing?.shown(expressions);
+    channels.expressive = shown?.some((weight) => weight !== 0) ?? false;
+    if (shown && channels.expressive) this.device.write(channels.weights, shown);
   }
 
   /**

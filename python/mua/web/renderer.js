@@ -96,6 +96,7 @@ export class Renderer {
   /** Upload an avatar, so that it can be decoded. @returns {Promise<Slot>} @throws {AvatarError} where the device cannot hold it */
   async add(/** @type {Avatar} */ avatar) {
     const expressing = avatar.expressions.length ? await import("./expressing.js") : null;
+    await expressing?.fetchRules(avatar);
     if (this.destroyed) throw new AvatarError(AWAY); // lost meanwhile
     const needed = [
       ...kernelsFor(this.device, avatar),

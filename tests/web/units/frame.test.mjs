@@ -16,7 +16,11 @@ function frameOf() {
   const frame = Object.create(AvatarFrame.prototype);
   const level = (at) => ({ level: at, splatCount: 10 - at });
   Object.assign(frame, {
-    buffers: { avatar, level },
+    buffers: {
+      avatar,
+      level,
+      expressing: { shown: (weights) => weights.map((weight) => (weight < 0.1 ? 0 : weight)) },
+    },
     device: { write() {} },
     hidden: null,
     shown: { outside: 0, components: "shown", weights: "weights" },
@@ -66,6 +70,7 @@ test("a face is decoded by the weights of the newest pose, and left as it is whe
   };
   assert.equal(express(Float32Array.of(0.25, 1)), true);
   assert.equal(express(Float32Array.of(0, 0)), false);
+  assert.equal(express(Float32Array.of(0.05, 0)), false, "of what is held back");
   assert.deepEqual(written, [[0.25, 1]]);
   frame.decode("pass", windowAt(0), 0);
   assert.equal(frame.shown.expressive, false, "of poses without weights");

@@ -1,10 +1,11 @@
 // Expressions of a file and their weights in clips, checked. References: python/mua/asset/read_rig.py and read.py.
 
+import { RULE_CODES } from "./limits.js";
 import { refuse } from "./parser.js";
 import { indices, MAX_BYTES, reals } from "./tensors.js";
 
 /** @typedef {import("./parser.js").Tree} Tree */
-/** @typedef {{starts: Int32Array, vertices: Int32Array, offsets: Float32Array, gains: Float32Array}} Targets expression by expression: the entries starts[e] to starts[e + 1] - 1 are vertices [P] and how far weight 1 moves them [P, 3], metres, and how much brighter colours become there [P], as a share of them */
+/** @typedef {{starts: Int32Array, vertices: Int32Array, offsets: Float32Array, gains: Float32Array, rules: Int32Array | null}} Targets expression by expression: the entries starts[e] to starts[e + 1] - 1 are vertices [P] and how far weight 1 moves them [P, 3], metres, and how much brighter colours become there [P], as a share of them; rules [E] of ../rules.js */
 
 /** Names of expressions and what each moves; none where the file has none. @param {Tree | undefined} tree @param {number} vertices of the template @returns {{names: string[], targets: Targets}} */
 export function readExpressions(tree, vertices) {
@@ -13,6 +14,7 @@ export function readExpressions(tree, vertices) {
     vertices: new Int32Array(),
     offsets: new Float32Array(),
     gains: new Float32Array(),
+    rules: null,
   };
   if (!tree) return { names: [], targets: none };
   /** @type {string[]} */
@@ -30,7 +32,8 @@ export function readExpressions(tree, vertices) {
   const gains = tree.gains
     ? reals(tree.gains, "expressions.gains", [moved.length]).values
     : new Float32Array(moved.length);
-  return { names, targets: { starts, vertices: moved, offsets, gains } };
+  const rules = tree.rules ? indices(tree.rules, "expressions.rules", [names.length], 0, RULE_CODES) : null;
+  return { names, targets: { starts, vertices: moved, offsets, gains, rules } };
 }
 
 /** Weights [F, E] of a clip. @param {Tree} tensor @param {string} path @param {number[]} shape */
