@@ -79,6 +79,8 @@ def values(tree: Tree) -> dict[str, tuple[str, bytes]]:
     }
     if rig.expressions:
         floats["expressions.offsets"] = rig.expressions.offsets
+        if rig.expressions.rules is not None:
+            integers["expressions.rules"] = rig.expressions.rules
         if rig.expressions.gains is not None:
             floats["expressions.gains"] = rig.expressions.gains
     clips: dict[str, Any] = {f"clips.{i}.rate": clip.rate for i, clip in enumerate(avatar.clips)}

@@ -19,7 +19,7 @@ from oracle import expressions, file
 from oracle.motion import Pose
 from readers import SECONDS, Reader, within
 from recent_node import NEEDS_NODE
-from synthetic_avatar import synthetic_avatar, with_expressions, with_surface
+from synthetic_avatar import synthetic_avatar, with_expressions, with_rules, with_surface
 
 from mua.asset.flatbuffer import FormatError, parse
 from mua.asset.packing import tensors
@@ -107,7 +107,8 @@ def test_mutants_with_expressions_are_refused_or_move_a_face_as_the_page_says(
 
     The C# reader answers alike and gives the same values; the browser's answers alike.
     """
-    sound = [encode(with_expressions(synthetic_avatar()), storage=storage) for storage in STORAGES]
+    made = with_expressions(synthetic_avatar())
+    sound = [encode(with_rules(made) if ruled else made, storage=s) for ruled in (False, True) for s in STORAGES]
     codes, moving = Counter[str](), 0
     for seed in seeds:
         content = expression_mutant(sound, seed)

@@ -1,5 +1,6 @@
 """The package's own frames of an avatar with a face, run by mono and replayed on Vulkan, against decode()."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,9 +12,10 @@ from frame_errors import exact_colors
 from packed_splats import colors_of, opacities_of, unpacked
 from recorded_frames import eye_lines
 from replay import replay
-from synthetic_avatar import sparse_avatar, with_expressions
+from synthetic_avatar import sparse_avatar, with_expressions, with_rules
 
 from mua.asset import read, write
+from mua.asset.avatar import Avatar
 from mua.asset.tensors import Storage
 from mua.avatar.camera import orbit
 from mua.avatar.decode import decode_clip_frame
@@ -25,12 +27,17 @@ LEAST_SEEN = 0.75  # of the splats
 EXPRESSIONS = ["SumTargets", "BendTriangles", "BendVertices", "BendTexels"]
 
 
-@pytest.mark.parametrize("storage", ["f32", "i8"])
+@pytest.mark.parametrize(("storage", "change"), [("f32", lambda avatar: avatar), ("i8", with_rules)])
 def test_a_face_moves_as_the_reference_moves_it_at_every_level(
-    csharp: CSharp, frame_program: Path, device: Device, tmp_path: Path, storage: Storage
+    csharp: CSharp,
+    frame_program: Path,
+    device: Device,
+    tmp_path: Path,
+    storage: Storage,
+    change: Callable[[Avatar], Avatar],
 ) -> None:
     """The first frame and the last; in one whose weights are all 0 nothing more is dispatched."""
-    made = with_expressions(sparse_avatar(2))
+    made = change(with_expressions(sparse_avatar(2)))
     [clip] = made.clips
     assert clip.expressions is not None
     weights = clip.expressions.copy()

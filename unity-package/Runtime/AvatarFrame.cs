@@ -203,13 +203,19 @@ namespace Mua
             channels.Outside = describe.Write(rotations, translations, componentValues);
             channels.Components.SetData(componentValues);
             channels.IsExpressive = false;
-            foreach (float weight in expressions)
+            if (expressions.Length == 0)
+            {
+                return;
+            }
+            expressions.CopyTo(weightValues);
+            Tensor rules = Avatar.Avatar.Expressions.Rules;
+            ExpressionRules.Apply(rules == null ? default : rules.Integers, weightValues);
+            foreach (float weight in weightValues)
             {
                 channels.IsExpressive |= weight != 0;
             }
             if (channels.IsExpressive)
             {
-                expressions.CopyTo(weightValues);
                 channels.Weights.SetData(weightValues);
             }
         }

@@ -255,7 +255,10 @@ namespace Mua
             return Expressions.Set(name, weight);
         }
 
-        /// <summary>How far one of its own expressions shows at this moment, 0 to 1; 0 where it has none of this name.</summary>
+        /// <summary>
+        /// The weight of one of its own expressions at this moment, 0 to 1, as it was set or as the clip has it, whatever else
+        /// holds it back; 0 where it has none of this name.
+        /// </summary>
         public float GetExpression(string name)
         {
             int index = Expressions.Find(name);

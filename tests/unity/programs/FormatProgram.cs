@@ -217,6 +217,10 @@ internal static class FormatProgram
             {
                 add("expressions.gains", avatar.Expressions.Gains);
             }
+            if (avatar.Expressions.Rules != null)
+            {
+                add("expressions.rules", avatar.Expressions.Rules);
+            }
         }
         return tensors;
     }

@@ -23,7 +23,13 @@ namespace Mua.Format
             Tensor offsets = tensors.Reals(tree.Child("offsets"), "expressions.offsets", count, 3);
             Table lit = tree.Child("gains");
             Tensor gains = lit == null ? null : tensors.Reals(lit, "expressions.gains", count);
-            return new Expressions { Names = names, Starts = starts, Vertices = moved, Offsets = offsets, Gains = gains };
+            Table ruled = tree.Child("rules");
+            Tensor rules = ruled == null
+                ? null : tensors.Indices(ruled, "expressions.rules", 0, Limits.RuleCodes, names.Length);
+            return new Expressions
+            {
+                Names = names, Starts = starts, Vertices = moved, Offsets = offsets, Gains = gains, Rules = rules,
+            };
         }
 
         /// <summary>[F, E] of a clip; null where it has none.</summary>

@@ -17,5 +17,8 @@ namespace Mua.Format
 
         /// <summary>[P] how much brighter colours become there, as a share of them; null where they stay.</summary>
         public Tensor Gains { get; internal set; }
+
+        /// <summary>[E] which others each holds back, and what holds it back; null where nothing does.</summary>
+        public Tensor Rules { get; internal set; }
     }
 }
