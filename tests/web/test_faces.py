@@ -134,12 +134,12 @@ def test_rules_of_a_file_hold_back_what_a_page_sets_over_its_clip(opened: Open) 
     page = opened(a=encode(ruled, storage="i8"), b=encode(AVATAR, storage="i8"))
     page.evaluate(READ)
     assert load(page, '"b.muaavatar"') == load(page) == ""
-    show(page, SPLATS, FRAME, rate)
-    over = clip[FRAME] * [1, 1, 1, 0] + [0, 0, 0, 0.75]
+    show(page, SPLATS, 0, rate)
+    over = clip[0] * [1, 1, 1, 0] + [0, 0, 0, 0.75]
     for given, weights in ((named(WEIGHTS), WEIGHTS), (json.dumps({"Mund auf": 0.75}), over)):
         left = ruled.rig.expressions.shown(np.array(weights, np.float32)).astype(float)
         assert (left != weights).sum() >= 2
-        page.evaluate(f"player.avatars[1].setExpressions({given})")
+        page.evaluate(f"(player.avatars[1].setExpressions(null), player.avatars[1].setExpressions({given}))")
         page.evaluate(f"player.avatars[0].setExpressions({named(weights)})")
         assert channels(page, 1) != channels(page, 0)
         page.evaluate(f"player.avatars[0].setExpressions({named(left.tolist())})")

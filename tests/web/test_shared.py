@@ -221,6 +221,33 @@ def test_what_cannot_be_fetched_on_demand_is_a_sentence_and_the_splats_stay(
     assert page.evaluate(f"{ELEMENT}.show") == "splats,shadow"
 
 
+@pytest.mark.parametrize(
+    ("module", "asked", "cannot"),
+    [
+        ("retarget/play.js", "avatars[0].playClip('walk.bvh')", "playClip: "),
+        ("retarget/rig.js", "avatars[0].retarget({})", "retarget: "),
+        ("picture.js", "screenshot()", "screenshot: "),
+    ],
+)
+def test_what_a_page_asks_for_and_cannot_be_fetched_is_one_error(
+    opened: Open, folder: dict[str, Content], module: str, asked: str, cannot: str
+) -> None:
+    page = opened({name: content for name, content in folder.items() if name != module})
+    said = page.evaluate(f"{ELEMENT}.{asked}.catch(({{ name, message }}) => [name, message])")
+    assert said[0] == "AvatarError"
+    assert said[1].startswith(cannot)
+    assert module in said[1]
+
+
+def test_motion_that_cannot_be_fetched_is_a_sentence_and_the_avatar_stays(
+    opened: Open, folder: dict[str, Content]
+) -> None:
+    page = opened({name: content for name, content in folder.items() if name != "retarget/play.js"})
+    assert page.evaluate(f"{ELEMENT}.playClip('walk.bvh')") is None
+    page.wait(f"{SENTENCE}.includes('playClip: ')")
+    assert page.evaluate(f"{ELEMENT}.avatars.length") == 1
+
+
 def extent(alpha: Array) -> Array:
     """First and last row and column [2, 2] in which anything shows."""
     places = np.argwhere(alpha > 0.1)

@@ -1,6 +1,6 @@
 // A player's avatars: what they play, and what a page sets of them.
 
-import { AvatarError } from "./error.js";
+import { AvatarError, unfetched } from "./error.js";
 import { clipsOf } from "./handle.js";
 import { LivePose } from "./live.js";
 import { Playback } from "./playback.js";
@@ -77,7 +77,7 @@ export class Avatars {
 
   /** @type {import("./handle.js").Asks["playClip"]} */
   async playClip(handle, source, options) {
-    const { playClip } = await import("./retarget/play.js");
+    const { playClip } = await import("./retarget/play.js").catch(unfetched("playClip"));
     return playClip(this, handle, source, options);
   }
 
@@ -91,7 +91,7 @@ export class Avatars {
 
   /** @type {import("./handle.js").Asks["retarget"]} */
   async retarget(handle, rig, options) {
-    const { follow } = await import("./retarget/rig.js");
+    const { follow } = await import("./retarget/rig.js").catch(unfetched("retarget"));
     return follow(this.entryOf(handle)?.avatar, rig, options);
   }
 

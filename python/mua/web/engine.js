@@ -2,7 +2,7 @@
 
 import { Avatars } from "./avatars.js";
 import { camerasOf, FOV, framing } from "./camera.js";
-import { AvatarError } from "./error.js";
+import { AvatarError, asAvatarError } from "./error.js";
 import { described, handleOf } from "./handle.js";
 import { load } from "./load.js";
 import { fetchAnatomy, isThereFor } from "./overlays.js";
@@ -363,12 +363,6 @@ export class Engine extends Avatars {
     this.renderer?.destroy();
     this.renderer = null;
   }
-}
-
-function asAvatarError(/** @type {unknown} */ error, /** @type {string} */ what) {
-  return error instanceof AvatarError
-    ? error
-    : new AvatarError(`${what}: ${error instanceof Error ? error.message : error}`);
 }
 
 /** What takes weights of expressions by name; null where an avatar has none. */

@@ -12,3 +12,15 @@ export class AvatarError extends Error {
     this.field = field;
   }
 }
+
+/** Any error as one that a user may see. @param {unknown} error @param {string} what cannot be done */
+export function asAvatarError(error, what) {
+  return error instanceof AvatarError
+    ? error
+    : new AvatarError(`${what}: ${error instanceof Error ? error.message : error}`);
+}
+
+/** Of a module that does not come when it is asked for. @param {string} what cannot be done @returns {(error: unknown) => never} */
+export const unfetched = (what) => (error) => {
+  throw asAvatarError(error, what);
+};

@@ -8,7 +8,7 @@ import { sample, window } from "./clip.js";
 import { Decodes, rankOf } from "./decodes.js";
 import { Memory } from "./device.js";
 import { readOrder, writeOrder } from "./early.js";
-import { AvatarError } from "./error.js";
+import { AvatarError, unfetched } from "./error.js";
 import { AvatarFrame } from "./frame.js";
 import { MILLISECONDS } from "./frame_budget.js";
 import { areCompiled, kernelsOf } from "./kernel.js";
@@ -212,7 +212,7 @@ export class Renderer {
     const target = memory.texture([width, height], COLOR, GPUTextureUsage.COPY_SRC);
     this.submit(target, posed, look);
     try {
-      const { readPicture } = await import("./picture.js");
+      const { readPicture } = await import("./picture.js").catch(unfetched("screenshot"));
       return await readPicture(this.device, target);
     } finally {
       memory.free();

@@ -1,7 +1,7 @@
 // From a page's own motion file to a clip of an avatar, fetched and read when it is asked for.
 
 import { Download } from "../download.js";
-import { AvatarError } from "../error.js";
+import { AvatarError, unfetched } from "../error.js";
 import { readBvh } from "./bvh.js";
 import { readGltf } from "./gltf.js";
 import { retarget } from "./retarget.js";
@@ -24,7 +24,8 @@ export async function readClip(source, avatar, { name, mapping = {}, animation }
     if (!isBvh && !/^\s*(glTF|\{)/.test(text)) throw new AvatarError("expected a BVH, glTF, GLB, VRM or VRMA file.");
     const motion = isBvh ? readBvh(text) : await readGltf(content, beside, animation);
     const expresses = motion.expressions.names.length && avatar.expressions.length;
-    const { clip, notes } = retarget(motion, avatar, mapping, expresses ? await import("../names/match.js") : null);
+    const names = expresses ? await import("../names/match.js").catch(unfetched("its expressions")) : null;
+    const { clip, notes } = retarget(motion, avatar, mapping, names);
     const stem = title.replace(/\.[^.]*$/, "");
     return { clip: { ...clip, name: name ?? (stem || "motion") }, notes };
   } catch (error) {
