@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.linalg import polar
 from scipy.spatial.transform import Rotation
-from synthetic_avatar import synthetic_avatar, with_expressions, with_one_sided
+from synthetic_avatar import synthetic_avatar, with_expressions, with_one_sided, with_rules
 
 from mua import rotation
 from mua.arrays import Array
@@ -292,6 +292,22 @@ def test_weights_beyond_0_and_1_are_held_there(avatar: Avatar) -> None:
     for given, held in ((7.0, 1.0), (-3.0, 0.0)):
         found, expected = (avatar.decode("wave", 3, expressions={"jawOpen": weight}) for weight in (given, held))
         assert found.centres.tobytes() == expected.centres.tobytes()
+
+
+def test_rules_hold_back_weights_of_clips_and_those_that_are_given(avatar: Avatar) -> None:
+    ruled, clip = with_rules(avatar), resample(avatar.clips[0], avatar.encoding.rate)
+    assert clip.expressions is not None
+    assert ruled.rig.expressions
+    for number, weights in enumerate((clip.expressions[4], np.array([0, 1, 1, 0.75]))):
+        given, left = (
+            dict(zip(avatar.expressions, values.tolist(), strict=True))
+            for values in (weights, ruled.rig.expressions.shown(weights))
+        )
+        found = ruled.decode(clip, 4, expressions=given if number else None)
+        assert found.centres.tobytes() == avatar.decode(clip, 4, expressions=left).centres.tobytes()
+        assert found.centres.tobytes() != avatar.decode(clip, 4, expressions=given).centres.tobytes()
+    blink = ruled.decode(clip, 4, expressions={"eyeBlinkLeft": 1, "Mund auf": 1})
+    assert blink.texture.tobytes() == ruled.decode(clip, 4, expressions={"Mund auf": 0.6}).texture.tobytes()
 
 
 def test_names_that_the_avatar_lacks_move_the_nearest_that_it_has(avatar: Avatar) -> None:

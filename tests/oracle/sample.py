@@ -78,6 +78,7 @@ def numbers(avatar: Record) -> Iterator[tuple[str, str, Any]]:
 
 def of_expressions(avatar: Record) -> Iterator[tuple[str, str, Any]]:
     pose = motion.poses(avatar, avatar.clips[0])[FRAME]
+    assert pose.weights is not None
     yield "12", f"w of frame {FRAME}", pose.weights
     yield "12.6", f"w' of frame {FRAME}", expressions.shown(avatar.expressions, pose.weights)
     yield "12.1", "m", expressions.moved(avatar, pose)

@@ -23,7 +23,7 @@ from frame_errors import PosedFrame
 from golden_case import UNTOUCHED
 from packed_splats import MANTISSA_BITS
 from skinned_cases import ULP
-from synthetic_avatar import sparse_avatar, synthetic_avatar, with_expressions
+from synthetic_avatar import sparse_avatar, synthetic_avatar, with_expressions, with_rules
 
 from mua.arrays import Array
 from mua.asset import write
@@ -219,6 +219,18 @@ def test_weights_of_0_give_the_bytes_of_the_avatar_without(device: Device, tmp_p
     assert channels_of(device, own, np.array([0.7, 0, 0, 0])) != expected
     for weights in (None, np.zeros(4), np.array([0, 0, 1.0, 0])):
         assert channels_of(device, own, weights) == expected
+
+
+def test_rules_of_a_file_hold_back_what_a_player_is_given(device: Device, tmp_path: Path) -> None:
+    """To the bytes of an avatar without rules that is given what they leave; a face held back wholly is at rest."""
+    made = with_expressions(synthetic_avatar())
+    plain, ruled = tmp_path / "plain.muaavatar", tmp_path / "ruled.muaavatar"
+    write(plain, made, storage="f16")
+    write(ruled, with_rules(made), storage="f16")
+    without, own = (AvatarFrame(device, AvatarBuffers(device, path)) for path in (plain, ruled))
+    for weights, left in (([0.25, 1, 0.5, 0.75], [0.125, 0, 0.5, 1]), ([1, 0, 1, 0.5], [0, 0, 1, 0])):
+        assert channels_of(device, own, np.array(weights)) != channels_of(device, without, np.array(weights))
+        assert channels_of(device, own, np.array(weights)) == channels_of(device, without, np.array(left))
 
 
 def test_a_decode_in_parts_moves_the_face_as_one_at_once(device: Device, tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -24,9 +25,10 @@ def test_expressions_come_back(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("part", ["gains", "rules"])
 def test_expressions_without_light_or_rules_have_none_and_another_hash(tmp_path: Path, part: str) -> None:
+    nothing: dict[str, Any] = {part: None}
     rig = with_rules(with_expressions(synthetic_avatar())).rig
     assert rig.expressions
-    without = replace(rig, expressions=replace(rig.expressions, **{part: None}))
+    without = replace(rig, expressions=replace(rig.expressions, **nothing))
     write_rig(tmp_path / "rig.npz", without)
     found = read_rig(tmp_path / "rig.npz").expressions
     assert found

@@ -160,9 +160,11 @@ def express(
     weights: Array | None,  # [E] 0 to 1; None: all 0
 ) -> tuple[Array, Array]:
     """Vertices and texture with the expressions, as rules hold these back; the very same where all weights are 0."""
-    if rig.expressions is None or weights is None or not weights.any():
+    if rig.expressions is None or weights is None:
         return canonical, texture
     weights = rig.expressions.shown(weights).astype(canonical.dtype)
+    if not weights.any():
+        return canonical, texture
     moved = rig.expressions.displacement(weights, vertices=len(canonical))
     faces, texels = rig.mesh.faces, rig.texels
     starts, stars = stars_of(faces, len(canonical))
