@@ -4,6 +4,7 @@ import json
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from commands import Ended, process
 from synthetic_avatar import synthetic_avatar, with_expressions
@@ -76,7 +77,14 @@ def test_expressions_are_named(tmp_path: Path) -> None:
     held = json.loads(inspect("--json", path).out)
     assert held["expressions"] == ["jawOpen", "eyeBlinkLeft", "nothing", "Mund auf"]
     assert held["bytes_by_part"]["expressions"] == 4 * (5 + 7) + 2 * 4 * 7 + 5 * 4  # entries, offsets and gains, shapes
+    assert held["ruled_expressions"] == []
     assert "4: jawOpen, eyeBlinkLeft, nothing, Mund auf" in inspect(path).out
+    made = with_expressions(synthetic_avatar())
+    assert made.rig.expressions
+    own = replace(made.rig.expressions, rules=np.array([3, 0, 64, 0], np.int32))
+    write(path, replace(made, rig=replace(made.rig, expressions=own)))
+    assert json.loads(inspect("--json", path).out)["ruled_expressions"] == ["jawOpen", "nothing"]
+    assert "jawOpen, nothing" in inspect(path).out
 
 
 def test_a_packed_file_shows_what_it_holds_packed_and_unpacked(tmp_path: Path) -> None:

@@ -7,6 +7,7 @@ from mua.asset.avatar import Avatar
 from mua.asset.count import flops, parameters, stored_bytes, unpacked_bytes
 from mua.asset.flatbuffer import Tree
 from mua.asset.packing import tensors
+from mua.rig.expressions import Expressions
 
 PARTS = (
     "skeleton",
@@ -52,6 +53,7 @@ def summary(
         "parameters": parameters(avatar),
         "flops_per_frame": flops(avatar),
         "expressions": list(avatar.expressions),
+        "ruled_expressions": _ruled(avatar.rig.expressions),
         "clips": [
             {"name": clip.name, "frames": len(clip), "rate": clip.rate, "seconds": len(clip) / clip.rate}
             for clip in avatar.clips
@@ -64,6 +66,12 @@ def storage_of(tree: Tree) -> str:
     if any("_stored" in tensor for _, tensor in tensors(tree)):
         return "packed"
     return str(tree["geometry"]["ll_basis"]["type"].lower())
+
+
+def _ruled(expressions: Expressions | None) -> list[str]:
+    if expressions is None or expressions.rules is None:
+        return []
+    return [name for name, rule in zip(expressions.names, expressions.rules, strict=True) if rule]
 
 
 def _skeleton(avatar: Avatar) -> dict[str, Any]:

@@ -63,6 +63,7 @@ def _whole(held: dict[str, Any]) -> Table:
         "expressions": f"{len(held['expressions'])}: {', '.join(held['expressions'])}"
         if held["expressions"]
         else "none",
+        "expressions' rules": ", ".join(held["ruled_expressions"]) or "none",
         "texels": f"{texels['used']} of {texels['side']} x {texels['side']}",
         "wavelet": f"{wavelet['name']}, {wavelet['levels']} levels",
         "geometry ranks": " ".join(map(str, held["ranks"]["geometry"])),
