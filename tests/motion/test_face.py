@@ -12,7 +12,6 @@ from mua.arrays import Array
 from mua.errors import InputError
 from mua.motion.face import read_face, with_face
 from mua.motion.load import load_motions
-from mua.motion.moved_face import MovedFace
 from mua.motion.poses_file import read_poses, write_poses
 from mua.pose.clip import Clip
 
@@ -77,16 +76,16 @@ def test_a_damaged_recording_is_a_sentence(tmp_path: Path, text: str, sentence: 
 
 def test_a_face_is_put_on_a_body_at_its_rate(tmp_path: Path) -> None:
     path = recording(tmp_path / "talk.csv", np.linspace(0, 1, 121)[:, None] * [1, 0.5, 0])
-    (clip,), notes = with_face([standing(90)], path, MovedFace(("blinkLeft", "aa", "Smoking")))
+    (clip,), notes = with_face([standing(90)], path, ("blinkLeft", "aa", "Smoking"))
     assert clip.expressions is not None
     np.testing.assert_allclose(clip.expressions[30], [0.5, 0.25, 0])
     np.testing.assert_allclose(clip.expressions[60], [1, 0.5, 0])
     assert not clip.expressions[61:].any()  # the face ends after two seconds
     assert notes == []
-    _, notes = with_face([standing(3)], path, MovedFace(("jawOpen",)))
+    _, notes = with_face([standing(3)], path, ("jawOpen",))
     assert notes == ["talk.csv: the character has no expression for EyeBlinkLeft."]
     with pytest.raises(InputError, match="of which the character has none; it has Smoking"):
-        with_face([standing(3)], path, MovedFace(("Smoking",)))
+        with_face([standing(3)], path, ("Smoking",))
 
 
 def test_motion_without_a_face_is_refused_as_one(tmp_path: Path) -> None:
@@ -108,7 +107,7 @@ def test_poses_keep_their_face(tmp_path: Path) -> None:
         person(),
         mapping=None,
         rate=30.0,
-        face=MovedFace(("eyeBlinkLeft", "eyeBlinkRight", "aa")),
+        face=("eyeBlinkLeft", "eyeBlinkRight", "aa"),
     )
     np.testing.assert_allclose(np.asarray(loaded.clip.expressions), weights[:, [1, 1, 0]])
     with np.load(tmp_path / "talk.npz") as file:
@@ -131,5 +130,5 @@ def test_a_clip_of_another_rig_brings_its_face(tmp_path: Path) -> None:
     channel = {"sampler": 0, "target": {"node": 3, "path": "weights"}}
     glb.json["animations"] = [{"name": "talk", "samplers": [sampler], "channels": [channel]}]
     path = glb.save(tmp_path / "talk.glb")
-    (clip,), _ = with_face([standing(31)], path, MovedFace(("jawOpen",)))
+    (clip,), _ = with_face([standing(31)], path, ("jawOpen",))
     np.testing.assert_allclose(np.asarray(clip.expressions)[:, 0], 0.7 * np.linspace(0, 1, 31), atol=1e-6)

@@ -20,7 +20,6 @@ from mua.characters.read import read_animation, read_surfaces
 from mua.motion.face import own_face
 from mua.motion.load import load_motions
 from mua.motion.match import match_joints
-from mua.motion.moved_face import MovedFace
 from mua.motion.read import read_motion
 from mua.motion.retarget import retarget
 from mua.motion.source import SourceMotion
@@ -232,7 +231,7 @@ def test_expressions_move_the_nearest_of_the_avatar_and_others_are_counted(tmp_p
     np.testing.assert_allclose(weights, np.stack([0 * blink, 1 - blink, blink, blink], axis=1), atol=4 * FLOAT)
     assert "1 of the motion's 3 expressions move none of the avatar's." in found["notes"]
     [read] = read_motion(path)
-    loaded = own_face(read, clip, MovedFace(tuple(names))).expressions
+    loaded = own_face(read, clip, tuple(names)).expressions
     np.testing.assert_allclose(weights, np.asarray(loaded), atol=4 * FLOAT)
 
 

@@ -42,7 +42,6 @@ from mua.fidelity.splats import SplatPainter
 from mua.fidelity.strips import caption, difference, sheet
 from mua.files.write import replacing, write_bytes
 from mua.motion.face import with_face
-from mua.motion.moved_face import MovedFace
 from mua.pose.clip import Clip
 from mua.pose.descriptor import heading_of
 from mua.pose.expression_names import match_expressions
@@ -259,7 +258,7 @@ def spoken(avatar: Avatar, clip: Clip, face: Path | None) -> Array:
     if face is None:
         return speech(avatar.expressions, np.arange(SPOKEN) * SYLLABLE * len(SENTENCE) / SPOKEN)
     longer = clip.cut(np.array(list(islice(cycle(range(len(clip))), SPOKEN))))
-    weights = with_face([longer], face, MovedFace(avatar.expressions))[0][0].expressions
+    weights = with_face([longer], face, avatar.expressions)[0][0].expressions
     assert weights is not None
     return weights.astype(np.float32)
 

@@ -22,7 +22,6 @@ from mua.files.write import replacing, require_writable, write_bytes
 from mua.motion.load import LoadedMotion, counted, load_motions
 from mua.motion.mapping import write_mapping
 from mua.motion.match import JointPair, joint_pairs, match_joints, require_limbs, unmatched_target
-from mua.motion.moved_face import face_of
 from mua.motion.quality import MotionQuality, measure_motion
 from mua.motion.source import SourceMotion
 from mua.pose.clip import Clip
@@ -70,7 +69,7 @@ def check(settings: BakeSettings, listener: Listener) -> Check:
             write_sheet(written[-1], face_sheet(fidelity.face))
     if character.expressions is not None:
         written.append(settings.beside("_expressions.json"))
-        write_expression_names(written[-1], character.expressions.names)
+        write_expression_names(written[-1], character.expression_names)
     if pairs or unmatched:
         written.append(settings.beside("_mapping.json"))
         write_mapping(written[-1], pairs, unmatched)
@@ -156,7 +155,7 @@ def _loaded(settings: BakeSettings, character: Character) -> list[LoadedMotion]:
             roles=character.roles,
             feet=settings.feet,
             refuse=False,
-            face=face_of(character),
+            face=character.expression_names,
         )
     ]
 

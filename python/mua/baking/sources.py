@@ -13,7 +13,6 @@ from mua.characters.read import read_character
 from mua.errors import InputError
 from mua.motion.face import with_face
 from mua.motion.load import counted, load_motions, unique_names
-from mua.motion.moved_face import face_of
 from mua.motion.planted_feet import Feet
 from mua.motion.quality import measure_motion
 from mua.pose.clip import Clip
@@ -112,7 +111,7 @@ def load_clips(
             rate=RATE,
             roles=character.roles,
             feet=feet,
-            face=face_of(character),
+            face=character.expression_names,
         ):
             quality = measure_motion(loaded.source, character.skeleton, loaded.clip, loaded.matches)
             require_names(str(path), (), (), [loaded.clip.name])
@@ -129,7 +128,6 @@ def faced(
     """The clips with facial motion of a file of its own; and notes. Errors: InputError where there is no face."""
     if face is None:
         return list(clips), []
-    moved = face_of(character)
-    if not (moved.names or moved.eyes):
+    if not character.expression_names:
         raise InputError(f"--face {face}: {character.name} has no expressions (morph targets) that it could move")
-    return with_face(clips, face, moved)
+    return with_face(clips, face, character.expression_names)

@@ -15,14 +15,16 @@ from mua.characters.correction import corrected
 from mua.characters.expression_file import with_expression_names
 from mua.characters.expressions import fingerprints, joined_targets, with_weights
 from mua.characters.facing import AS_SHOWN, Facing
+from mua.characters.gaze import GAZE, with_gaze
 from mua.characters.messages import UNHELD, Messages
 from mua.characters.outline import outlines
 from mua.characters.rigid_skeleton import rigid_skeleton, roles_of
 from mua.characters.winding import inside_out
 from mua.errors import InputError
 from mua.limits import MAX_INFLUENCES
+from mua.pose.expression_rules import LOOKS, rules_of
 from mua.rig.expressions import Expressions
-from mua.scene import Part, Scene, Source, Target, without
+from mua.scene import FaceRules, Part, Scene, Source, Target, without
 
 WELD = 1e-6  # of the character's size: vertices of one mesh nearer than this, with equal weights and targets, are one
 WEIGHT_STEP = 1e-5  # weights nearer than this are equal
@@ -81,7 +83,11 @@ def assemble(
     )
     if change.moved:
         bind = bind_pose(scene)
-        mesh = _merge(scene, bind)
+    gazing = with_gaze(scene, bind)
+    if change.moved or gazing is not scene:
+        mesh = _merge(gazing, bind)
+    looks = LOOKS if gazing is scene else (*LOOKS, *GAZE)
+    scene = gazing
     size_notes = tuple(f"{note} {OTHER_SIZE}" for note in change.size_notes)
     mesh = _outward(_weld(mesh))
     rigged = rigid_skeleton(scene, bind)
@@ -100,7 +106,7 @@ def assemble(
         materials=tuple(scene.materials[m] for m in shown),
         skin_indices=indices,
         skin_weights=mesh.weights.astype(np.float32),
-        expressions=mesh.expressions,
+        expressions=_ruled(mesh.expressions, scene.face_rules, looks),
         clips=with_weights(rigged.clips, scene.motions, () if mesh.expressions is None else mesh.expressions.names),
         source=Source(scene, rigged.nodes),
         corner_colors=None if (mesh.colors == 1).all() else mesh.colors,
@@ -109,6 +115,14 @@ def assemble(
         unit=change.unit,
         size_notes=size_notes,
     )
+
+
+def _ruled(expressions: Expressions | None, said: FaceRules, looks: Sequence[str]) -> Expressions | None:
+    """The expressions with what the file says of them."""
+    if expressions is None:
+        return None
+    rules = rules_of(expressions.names, said.switched, said.overrides, looks)
+    return replace(expressions, rules=rules)
 
 
 def _middles(mesh: _Mesh, joints: int) -> Array:
@@ -222,8 +236,7 @@ def _merge(scene: Scene, bind: Bind) -> _Mesh:
         vertex_count += len(vertices)
         uv_count += len(part.uv)
     whole = {name: np.concatenate(column) for name, column in columns.items()}
-    size = float(np.ptp(whole["vertices"], axis=0).max())
-    expressions, idle = joined_targets(targets, size=size, said=scene.face_rules)
+    expressions, idle = joined_targets(targets, size=float(np.ptp(whole["vertices"], axis=0).max()))
     return _Mesh(**whole, expressions=expressions, notes=(*notes, *idle))
 
 

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from mua.characters.gaze import GAZE
 from mua.characters.messages import listed
 from mua.errors import InputError
 from mua.files.write import write_bytes
@@ -44,6 +45,7 @@ def with_expression_names(scene: Scene, names: Mapping[str, str], path: Path) ->
     Errors: InputError for an expression that the file at `path` does not have.
     """
     held = dict.fromkeys(target.name for part in scene.parts for target in part.targets)
+    held |= dict.fromkeys(GAZE if scene.face_rules.eyes else ())  # has its own names
     for expression in names:
         if expression not in held:
             raise InputError(

@@ -9,9 +9,8 @@ from mua.arrays import Array
 from mua.characters.messages import listed
 from mua.pose.clip import Clip
 from mua.pose.expression_names import match_expressions
-from mua.pose.expression_rules import rules_of
 from mua.rig.expressions import Expressions
-from mua.scene import FaceRules, Motion, Target
+from mua.scene import Motion, Target
 
 STILL = 1e-5  # of the character's size: a target that moves a vertex less does not move it (0.02 mm on a person)
 APART = 1e-4  # of the character's size: vertices at one place whose targets differ by this are two, as on lips
@@ -21,7 +20,6 @@ def joined_targets(
     targets: Sequence[Target],  # in the bind pose, of vertices of all parts
     *,
     size: float,
-    said: FaceRules,
 ) -> tuple[Expressions | None, tuple[str, ...]]:
     """The targets of equal names as one expression each, and a sentence on those that move nothing."""
     names = [*dict.fromkeys(target.name for target in targets)]
@@ -43,7 +41,6 @@ def joined_targets(
         starts=np.concatenate([[0], np.cumsum(counts)]).astype(np.int32),
         vertices=np.concatenate([vertices for vertices, _ in moving.values()]).astype(np.int32),
         offsets=np.concatenate([offsets for _, offsets in moving.values()]).astype(np.float32),
-        rules=rules_of([*moving], said.switched, said.overrides),
     ), notes
 
 

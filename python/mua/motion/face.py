@@ -9,10 +9,10 @@ import numpy as np
 from mua.arrays import Array
 from mua.errors import InputError
 from mua.motion.live_link import read_live_link
-from mua.motion.moved_face import MovedFace
 from mua.motion.read import read_motion
 from mua.motion.source import SourceMotion
 from mua.pose.clip import Clip
+from mua.pose.expression_names import match_expressions
 from mua.pose.resample import frames_at
 
 SHOWN = 8  # names that a sentence lists
@@ -43,44 +43,48 @@ def read_face(path: Path) -> FaceMotion:
 def with_face(
     clips: Sequence[Clip],
     path: Path,
-    moved: MovedFace,
+    names: Sequence[str],  # [E] of the character's expressions
 ) -> tuple[list[Clip], list[str]]:
     """The clips with the facial motion of `path` from their first frame on, and notes on what does not fit.
 
     After the face's last frame the weights are 0. Errors: InputError where no expression of the character follows it.
     """
     face = read_face(path)
-    matrix = moved.shares(face.names)
+    matrix = match_expressions(names, face.names)
     if not matrix.any():
-        held = _listed(moved.names)
+        held = _listed(names)
         raise InputError(f"--face {path}: moves {_listed(face.names)}, of which the character has none; it has {held}")
     weights = np.clip(face.weights @ matrix.T, 0, 1)
     unused = [name for name, column in zip(face.names, matrix.T, strict=True) if not column.any()]
     notes = [f"{path.name}: the character has no expression for {_listed(unused)}."] if unused else []
-    return [moved.on(clip, _during(clip, weights, face.rate)) for clip in clips], notes
+    return [replace(clip, expressions=_during(clip, weights, face.rate)) for clip in clips], notes
 
 
-def own_face(source: SourceMotion, clip: Clip, moved: MovedFace) -> Clip:
+def own_face(
+    source: SourceMotion,
+    clip: Clip,
+    names: Sequence[str],  # [E] of the character's expressions
+) -> Clip:
     """A clip on a character with what the weights of its source's expressions move there."""
     clip = replace(clip, expressions=None)
     if source.clip.expressions is None:
         return clip
-    matrix = moved.shares(source.expressions)
+    matrix = match_expressions(names, source.expressions)
     if not matrix.any():
         return clip
     weights = np.clip(source.clip.expressions @ matrix.T, 0, 1)
-    return moved.on(clip, _during(clip, weights, source.clip.rate))
+    return replace(clip, expressions=_during(clip, weights, source.clip.rate))
 
 
-def _during(clip: Clip, weights: Array, rate: float) -> Array:
-    """Weights [F, E] at the frames of a clip, 0 after their end."""
+def _during(clip: Clip, weights: Array, rate: float) -> Array | None:
+    """Weights [F, E] at the frames of a clip, 0 after their end; None where all are 0."""
     times = np.arange(len(clip)) * (rate / clip.rate)  # in frames of the weights
     before = np.minimum(times.astype(int), len(weights) - 1)
     after = np.minimum(before + 1, len(weights) - 1)
     found = weights[before] + (times - before)[:, None] * (weights[after] - weights[before])
     still = Clip("", rate, np.zeros((len(weights), 0, 4)), np.zeros((len(weights), 0, 3)))
     found[frames_at(still, clip.rate) :] = 0
-    return found
+    return found if found.any() else None
 
 
 def _listed(names: Sequence[str]) -> str:

@@ -7,7 +7,6 @@ from pathlib import Path
 from mua.errors import InputError
 from mua.motion.face import own_face
 from mua.motion.match import Matches, match_joints, require_limbs
-from mua.motion.moved_face import NO_FACE, MovedFace
 from mua.motion.planted_feet import Feet, plant_feet
 from mua.motion.read import read_motion
 from mua.motion.retarget import retarget
@@ -38,7 +37,7 @@ def load_motions(
     roles: Mapping[str, str] | None = None,  # joint of `skeleton` to role, where the character's file itself says it
     feet: Feet = "auto",  # whether standing feet are held in place
     refuse: bool = True,  # whether motion that moves no arm, leg or spine of the character is an error, else a note
-    face: MovedFace = NO_FACE,  # what of the character follows a motion's expressions
+    face: Sequence[str] = (),  # names of the character's expressions, which follow those of the motion
 ) -> list[LoadedMotion]:
     """The clips of a motion file, or of every file of a directory, on `skeleton`, each with what it was made from.
 

@@ -13,7 +13,6 @@ from mua.live.live import Live
 from mua.live.receiver import Receiver
 from mua.motion.face import with_face
 from mua.motion.load import counted, load_motions, unique_names
-from mua.motion.moved_face import MovedFace
 from mua.pose.clip import Clip
 from mua.pose.expression_names import set_weights
 from mua.pose.resample import resample
@@ -37,7 +36,7 @@ def player_clips(
     clips, notes = _body_clips(avatar, file, motion=motion, mapping=mapping)
     if face is None:
         return clips, notes
-    faces, unused = with_face(clips, face, MovedFace(avatar.expressions))
+    faces, unused = with_face(clips, face, avatar.expressions)
     return faces, (*notes, *unused)
 
 
@@ -46,8 +45,7 @@ def _body_clips(
 ) -> tuple[list[Clip], tuple[str, ...]]:
     rate = avatar.encoding.rate
     if motion is not None:
-        face = MovedFace(avatar.expressions)
-        loaded = load_motions(motion, avatar.rig.skeleton, mapping=mapping, rate=rate, face=face)
+        loaded = load_motions(motion, avatar.rig.skeleton, mapping=mapping, rate=rate, face=avatar.expressions)
         clips = [one.clip for one in loaded]
         return unique_names(clips), counted([note for one in loaded for note in one.notes], clips)
     if not avatar.clips:

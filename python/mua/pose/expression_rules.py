@@ -24,14 +24,15 @@ def rules_of(
     names: Sequence[str],  # [E]
     switched: Set[str],
     overrides: Mapping[str, Mapping[str, str]],  # expression to kinds that it holds back: "block" or "blend"
+    looks: Sequence[str] = LOOKS,  # those that show a gaze
 ) -> Array | None:
     """The rules [E] int32 of expressions; None where none is a switch or holds anything back."""
-    rules = np.zeros(len(names), np.int32)
+    rules, kinds = np.zeros(len(names), np.int32), KINDS | {"look": looks}
     if not any(name in switched or overrides.get(name) for name in names):
         return None
     for row, name in enumerate(names):
         held = overrides.get(name, {})
-        for number, (kind, own) in enumerate(KINDS.items()):
+        for number, (kind, own) in enumerate(kinds.items()):
             rules[row] |= (OF_KIND if name in own else HOLDS.get(held.get(kind, ""), 0)) << 2 * number
         rules[row] |= SWITCH * (name in switched)
     return rules
@@ -40,17 +41,17 @@ def rules_of(
 def held_back(
     rules: Array | None,  # [E] int32; None: all 0
     weights: Array,  # [..., E] 0 to 1
-) -> tuple[Array, dict[str, Array]]:
-    """The weights [..., E] that show, and how much [...] blinks, looks and mouths are held back, 0 to 1."""
+) -> Array:
+    """The weights [..., E] that show."""
     if rules is None:
-        return weights, {kind: np.zeros(weights.shape[:-1]) for kind in KINDS}
+        return weights
     switched, given = rules & SWITCH != 0, weights.astype(np.float64)
     own = np.where(switched, given > THRESHOLD, given)
-    shown, held = own.copy(), {}
-    for number, kind in enumerate(KINDS):
+    shown = own.copy()
+    for number in range(len(KINDS)):
         role = rules >> 2 * number & OF_KIND
         amounts = np.where(role == HOLDS["block"], own > 0, np.where(role == HOLDS["blend"], own, 0))
-        held[kind] = np.minimum(amounts.sum(axis=-1), 1)
-        left = np.where(switched, held[kind][..., None] == 0, 1 - held[kind][..., None])
+        held = np.minimum(amounts.sum(axis=-1, keepdims=True), 1)
+        left = np.where(switched, held == 0, 1 - held)
         shown = np.where(role == OF_KIND, shown * left, shown)
-    return shown.astype(weights.dtype), held
+    return shown.astype(weights.dtype)

@@ -39,3 +39,8 @@ class Character:
     source: Source | None = None  # content of the file, to compare with; None: no file, or nothing to compare
     roles: Mapping[str, str] = field(default_factory=dict)  # joint to body part, where the file states it
     expressions: Expressions | None = None  # over the vertices of `mesh`; None: the character has none
+
+    @property
+    def expression_names(self) -> tuple[str, ...]:
+        """The names of its expressions; empty where it has none."""
+        return () if self.expressions is None else self.expressions.names

@@ -36,7 +36,7 @@ class Expressions:
         weights: Array,  # [..., E] 0 to 1
     ) -> Array:
         """The weights [..., E] that show, as the rules hold them back; given these again, less may show."""
-        return held_back(self.rules, weights)[0]
+        return held_back(self.rules, weights)
 
     def displacement(
         self,
