@@ -10,6 +10,7 @@ import pytest
 from gltf_files import Glb
 from named_figures import written_names
 from people import moving, person
+from scipy.spatial.transform import Rotation
 from shared_data import SharedData
 from web.test_modules import node, pytestmark  # noqa: F401  needs Node
 
@@ -233,6 +234,31 @@ def test_expressions_move_the_nearest_of_the_avatar_and_others_are_counted(tmp_p
     [read] = read_motion(path)
     loaded = own_face(read, clip, tuple(names)).expressions
     np.testing.assert_allclose(weights, np.asarray(loaded), atol=4 * FLOAT)
+
+
+def test_the_gaze_of_a_vrm_animation_moves_what_the_package_moves_by_it(tmp_path: Path) -> None:
+    source = person()
+    clip = moving(source)
+    made, count = vrma(source, clip), len(clip)
+    turns = np.concatenate(
+        [
+            Rotation.from_euler("y", np.linspace(-60, 60, count // 2)[:, None], degrees=True).as_quat(),
+            Rotation.from_euler("x", np.linspace(30, -30, count - count // 2)[:, None], degrees=True).as_quat(),
+        ]
+    )
+    nodes, animation = made.json["nodes"], made.json["animations"][0]
+    nodes.append({"name": "gaze"})
+    nodes[0].setdefault("children", []).append(len(nodes) - 1)
+    animation["samplers"].append({"input": animation["samplers"][0]["input"], "output": made.accessor(turns)})
+    target = {"node": len(nodes) - 1, "path": "rotation"}
+    animation["channels"].append({"sampler": len(animation["samplers"]) - 1, "target": target})
+    made.json["extensions"]["VRMC_vrm_animation"]["lookAt"] = {"node": len(nodes) - 1}
+    path, names = made.save(tmp_path / "gaze.vrma"), ["lookUp", "eyeLookOutLeft", "eyeLookInLeft", "jawOpen"]
+    found = browser_clip(tmp_path, person(size=0.8), path, expressions=names)
+    weights = np.array(found["expressions"]).reshape(-1, 4)
+    [read] = read_motion(path)
+    np.testing.assert_allclose(weights, np.asarray(own_face(read, clip, names).expressions), atol=8 * FLOAT)
+    assert (weights[:, :3].max(axis=0) > 0.3).all()
 
 
 def test_weights_of_a_mesh_are_expressions_of_their_names(tmp_path: Path) -> None:

@@ -256,15 +256,28 @@ function uniqueNames(/** @type {string[]} */ names) {
   });
 }
 
-/** Weights of expressions: of VRMA the place along x of each one's node, of meshes those of morph targets that have names. @param {Document} document @param {Track[]} tracks @param {number[]} times @returns {import("./source.js").Expressions} */
+/** Weights of VRM's gaze that looks where a track turns +Z: 1 at 90 degrees. Reference: python/mua/characters/gltf/vrm_look.py. @param {Track} track @param {number} time @returns {Record<string, number>} */
+function gazeAt(track, time) {
+  const [x, y, z] = rotate(normalized(toOurs(valueAt(track, time))), [0, 0, 1]);
+  const [left, down] = [Math.atan2(x, z), Math.asin(Math.min(Math.max(-y, -1), 1))];
+  const shares = Object.entries({ lookLeft: left, lookRight: -left, lookDown: down, lookUp: -down });
+  return Object.fromEntries(shares.map(([name, angle]) => [name, Math.min(Math.max(angle / (Math.PI / 2), 0), 1)]));
+}
+
+/** Weights of expressions: of VRMA the place along x of each one's node and the turn of its gaze, of meshes those of morph targets that have names. @param {Document} document @param {Track[]} tracks @param {number[]} times @returns {import("./source.js").Expressions} */
 function expressionsOf(document, tracks, times) {
   /** @type {Map<string, (time: number) => number>} */
   const found = new Map();
-  const { preset = {}, custom = {} } = document.json.extensions?.VRMC_vrm_animation?.expressions ?? {};
+  const { expressions, lookAt } = document.json.extensions?.VRMC_vrm_animation ?? {};
+  const { preset = {}, custom = {} } = expressions ?? {};
   for (const [name, entry] of Object.entries({ ...preset, ...custom })) {
     const track = tracks.find(({ node, path }) => node === entry?.node && path === "translation");
     if (track) found.set(name, (time) => valueAt(track, time)[0]);
   }
+  const looking = tracks.find(({ node, path }) => node === lookAt?.node && path === "rotation");
+  if (looking)
+    for (const name of Object.keys(gazeAt(looking, 0)))
+      if (!found.has(name)) found.set(name, (time) => gazeAt(looking, time)[name]);
   for (const track of tracks) {
     if (track.path !== "weights") continue;
     const mesh = document.json.meshes?.[document.nodes[track.node].mesh];
