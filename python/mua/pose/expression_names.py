@@ -12,11 +12,19 @@ from functools import lru_cache
 import numpy as np
 
 from mua.arrays import Array
-from mua.pose.expression_vocabulary import ARKIT, NAMES, VISEMES, VRM, is_own_spelling, known_expression
+from mua.pose.expression_vocabulary import (
+    ARKIT,
+    NAMES,
+    PAIRS_AND_HALVES,
+    VISEMES,
+    VRM,
+    is_own_spelling,
+    known_expression,
+)
 
 # For each expression, sets of others that stand for it; the first of which an avatar has any is taken.
 STAND_INS: Mapping[str, Sequence[Mapping[str, float]]] = NAMES["standIns"]
-_VOCABULARIES = (VRM, VISEMES, ARKIT)  # where a source has several, an expression follows the first
+_VOCABULARIES = (VRM, VISEMES, ARKIT, PAIRS_AND_HALVES)  # where a source has several, an expression follows the first
 
 
 def match_expressions(

@@ -14,14 +14,27 @@ namespace Mua.Motion
         private static readonly Regex Word = new Regex(
             @"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+|[\p{L}\p{Nl}\p{No}\p{Cs}-[A-Za-z]]+", RegexOptions.CultureInvariant);
 
+        private static readonly string[] Sides = { "left", "right" };
         private static readonly Dictionary<string, string> BySpelling = Spelt();
         private static readonly Dictionary<string, string> ByOtherName = OtherNames();
 
-        /// <summary>The expression of ARKit, VRM or Oculus' visemes that a name means, in whatever spelling; else null.</summary>
+        /// <summary>The expression of a vocabulary that a name means, in whatever spelling; else null.</summary>
         public static string Known(string name)
         {
             string spelling = Spelling(name);
-            return BySpelling.TryGetValue(spelling, out string known) || ByOtherName.TryGetValue(spelling, out known) ? known : null;
+            if (BySpelling.TryGetValue(spelling, out string known) || ByOtherName.TryGetValue(spelling, out known))
+            {
+                return known;
+            }
+            foreach (string side in Sides)
+            {
+                if (spelling.EndsWith(side, StringComparison.Ordinal) &&
+                    ByOtherName.TryGetValue(spelling.Substring(0, spelling.Length - side.Length), out string both))
+                {
+                    return BySpelling.TryGetValue(Spelling(both + "_" + side), out known) ? known : null;
+                }
+            }
+            return null;
         }
 
         /// <summary>
@@ -124,21 +137,34 @@ namespace Mua.Motion
             return Array.FindIndex(ExpressionTable.Vocabularies, names => Array.IndexOf(names, known) >= 0);
         }
 
-        /// <summary>A name in one spelling, less words before it that only say whose it is.</summary>
+        /// <summary>A name in one spelling, less words before it that only say whose it is; its side comes last.</summary>
         private static string Spelling(string name)
         {
             string own = name.Normalize(NormalizationForm.FormKC);
-            MatchCollection words = Word.Matches(own.Substring(own.LastIndexOf('.') + 1));
-            var spelling = new StringBuilder();
-            for (int i = 0; i < words.Count; i++)
+            var words = new List<string>();
+            foreach (Match word in Word.Matches(own.Substring(own.LastIndexOf('.') + 1)))
             {
-                string word = words[i].Value.ToLowerInvariant();
-                bool isLast = i == words.Count - 1;
-                bool isOwner = spelling.Length == 0 && !isLast && Array.IndexOf(ExpressionTable.Owners, word) >= 0;
-                bool isSide = spelling.Length > 0 && isLast && (word == "l" || word == "r");
-                spelling.Append(isOwner ? "" : isSide ? word == "l" ? "left" : "right" : word);
+                words.Add(word.Value.ToLowerInvariant());
             }
-            return spelling.ToString();
+            while (words.Count > 1 && Array.IndexOf(ExpressionTable.Owners, words[0]) >= 0)
+            {
+                words.RemoveAt(0);
+            }
+            if (words.Count > 1 && Side(words[0]) != null)
+            {
+                words.Add(words[0]);
+                words.RemoveAt(0);
+            }
+            if (words.Count > 1)
+            {
+                words[words.Count - 1] = Side(words[words.Count - 1]) ?? words[words.Count - 1];
+            }
+            return string.Concat(words);
+        }
+
+        private static string Side(string word)
+        {
+            return Array.Find(Sides, side => word == side || word == side.Substring(0, 1));
         }
 
         private static Dictionary<string, string> Spelt()

@@ -6,8 +6,10 @@ const WORD = /[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+|(?:(?![A-Za-z])[\p{L}\p{N
 const SIDE = new Map([
   ["l", "left"],
   ["r", "right"],
+  ["left", "left"],
+  ["right", "right"],
 ]);
-const VOCABULARIES = [TABLE.vrm, TABLE.visemes, TABLE.arkit]; // where a source has several, an expression follows the first
+const VOCABULARIES = [TABLE.vrm, TABLE.visemes, TABLE.arkit, TABLE.pairsAndHalves]; // where a source has several, an expression follows the first
 const STAND_INS = new Map(Object.entries(TABLE.standIns));
 const BY_SPELLING = new Map(VOCABULARIES.flat().map((name) => [spelt(name), name]));
 const BY_OTHER_NAME = new Map(Object.entries(TABLE.otherNames).map(([other, name]) => [spelt(other), name]));
@@ -17,6 +19,7 @@ function spelt(/** @type {string} */ name) {
   const own = name.normalize("NFKC").split(".").at(-1) ?? "";
   const words = (own.match(WORD) ?? []).map((word) => word.toLowerCase());
   while (words.length > 1 && TABLE.owners.includes(words[0])) words.shift();
+  if (words.length > 1 && SIDE.has(words[0])) words.push(/** @type {string} */ (words.shift()));
   if (words.length > 1) words.push(/** @type {string} */ (withSide(words.pop())));
   return words.join("");
 }
@@ -25,10 +28,13 @@ function withSide(/** @type {string | undefined} */ word) {
   return SIDE.get(word ?? "") ?? word;
 }
 
-/** The expression of ARKit, VRM or Oculus' visemes that a name means, in whatever spelling. @returns {string | undefined} */
+/** The expression of a vocabulary that a name means, in whatever spelling. @returns {string | undefined} */
 export function knownExpression(/** @type {string} */ name) {
   const spelling = spelt(name);
-  return BY_SPELLING.get(spelling) ?? BY_OTHER_NAME.get(spelling);
+  const known = BY_SPELLING.get(spelling) ?? BY_OTHER_NAME.get(spelling);
+  const [, whole, side] = (!known && spelling.match(/^(.*)(left|right)$/)) || [];
+  const both = BY_OTHER_NAME.get(whole ?? "");
+  return both ? BY_SPELLING.get(spelt(`${both}_${side}`)) : known;
 }
 
 /** How much [E, S] each expression of a source moves each of an avatar. @param {string[]} names of the avatar's @param {string[]} source @returns {Float32Array} */
