@@ -5,6 +5,7 @@ together are least at the same number of texels. Errors are measured on the file
 """
 
 from collections.abc import Collection
+from itertools import pairwise
 
 import numpy as np
 from scipy.sparse import coo_matrix
@@ -27,6 +28,7 @@ FACE_SIZE = 2.0  # standard deviation about the middle of the face, over that of
 LEAST_FINE = {"head": 0.35, "hands": 0.7, "body": 0.7}  # of the mean, in length; for hidden surface HIDDEN_FINE of it
 HIDDEN_FINE = 0.7
 PLAIN, PLAIN_FINE = 1e-5, 0.87  # loss of a head's texture below which it shows nothing, and how much coarser it then is
+MOST_GROWTH = 4.0  # in length, that expressions count for
 SMOOTHING = 3  # rounds over neighbours
 HALVINGS = 30  # of the range in which the price of a texel is sought
 DEAREST = 2.0**10  # and the cheapest is 2^-60: such prices give the widest and the narrowest texels
@@ -52,16 +54,31 @@ def wanted_fineness(
     seen, front = (samples.means(share, len(surface)) for share in shares)
     nearness = _nearness(positions.mean(axis=1), surface * front * (parts == BODY_PARTS.index("head")))
     face = 1 + (FACE - 1) * nearness * np.minimum(front / FRONTAL, 1)
+    larger = _growth(surfaces, surface)
     # By its cube, since at an error in proportion to the width the best width falls with the cube root of the weight.
-    weight = np.maximum(seen / USUAL, LEAST_SEEN) * face**3
+    weight = np.maximum(seen / USUAL, LEAST_SEEN) * (face * larger) ** 3
     errors = _smooth((_finely(losses) + SHAPE * WIDTHS) * weight[:, None], surface, surfaces.faces)
     # What lies just behind a face is fine as well: wide splats of the inside of a mouth would shine through the lips.
-    least = (1 + (FACE - 1) * nearness) * np.where(seen < HIDDEN, HIDDEN_FINE, 1)
+    least = (1 + (FACE - 1) * nearness) * np.where(seen < HIDDEN, HIDDEN_FINE, 1) * larger
     finer = _within_parts(errors, surface, surfaces.faces, least=least, parts=parts)
     head = parts == BODY_PARTS.index("head")
     if "head" not in chosen and surface @ (head * losses[:, OCTAVES == 0][:, 0]) <= PLAIN * surface[head].sum():
         finer[head] *= PLAIN_FINE
     return finer
+
+
+def _growth(
+    surfaces: Surfaces,
+    surface: Array,  # [F] at rest
+) -> Array:
+    """How much longer each triangle [F] is in the expression that makes it largest: a lid that closes, a mouth that opens."""
+    most, expressions = surface.copy(), surfaces.expressions
+    for start, stop in pairwise(expressions.starts if expressions is not None else ()):
+        moved = surfaces.vertices.copy()
+        moved[expressions.vertices[start:stop]] += expressions.offsets[start:stop]
+        touched = np.flatnonzero(np.isin(surfaces.faces, expressions.vertices[start:stop]).any(axis=1))
+        most[touched] = np.maximum(most[touched], areas(moved[surfaces.faces[touched]]))
+    return np.sqrt(np.minimum(most / np.maximum(surface, TINY), MOST_GROWTH**2))
 
 
 def _within_parts(
