@@ -1,11 +1,11 @@
 """How fine each triangle is to be drawn, for what its texture shows and for what of it is seen, the face before all.
 
 Within the head, the hands and the rest of the body, the widths of texels are those at which the errors of all triangles
-together are least at the same number of texels. Errors are measured on the file's own textures.
+together are least at the same number of texels. Errors are measured on the file's own textures, where an expression
+makes a triangle largest.
 """
 
 from collections.abc import Collection
-from itertools import pairwise
 
 import numpy as np
 from scipy.sparse import coo_matrix
@@ -16,6 +16,7 @@ from mua.atlas.surfaces import Surfaces
 from mua.atlas.visibility import seen_shares
 from mua.rig.body_parts import BODY_PARTS
 from mua.rig.charts import areas
+from mua.rig.growth import largest_areas
 
 TEXELS = 110_000  # of an avatar at 384 texels, for which widths are chosen
 OCTAVES = np.arange(-4, 3)  # widths at which losses are measured, of the mean
@@ -54,7 +55,8 @@ def wanted_fineness(
     seen, front = (samples.means(share, len(surface)) for share in shares)
     nearness = _nearness(positions.mean(axis=1), surface * front * (parts == BODY_PARTS.index("head")))
     face = 1 + (FACE - 1) * nearness * np.minimum(front / FRONTAL, 1)
-    larger = _growth(surfaces, surface)
+    largest = largest_areas(surfaces.expressions, surfaces.vertices, surfaces.faces)
+    larger = np.sqrt(np.minimum(largest / np.maximum(surface, TINY), MOST_GROWTH**2))
     # By its cube, since at an error in proportion to the width the best width falls with the cube root of the weight.
     weight = np.maximum(seen / USUAL, LEAST_SEEN) * (face * larger) ** 3
     errors = _smooth((_finely(losses) + SHAPE * WIDTHS) * weight[:, None], surface, surfaces.faces)
@@ -65,20 +67,6 @@ def wanted_fineness(
     if "head" not in chosen and surface @ (head * losses[:, OCTAVES == 0][:, 0]) <= PLAIN * surface[head].sum():
         finer[head] *= PLAIN_FINE
     return finer
-
-
-def _growth(
-    surfaces: Surfaces,
-    surface: Array,  # [F] at rest
-) -> Array:
-    """How much longer each triangle [F] is in the expression that makes it largest: a lid that closes, a mouth that opens."""
-    most, expressions = surface.copy(), surfaces.expressions
-    for start, stop in pairwise(expressions.starts if expressions is not None else ()):
-        moved = surfaces.vertices.copy()
-        moved[expressions.vertices[start:stop]] += expressions.offsets[start:stop]
-        touched = np.flatnonzero(np.isin(surfaces.faces, expressions.vertices[start:stop]).any(axis=1))
-        most[touched] = np.maximum(most[touched], areas(moved[surfaces.faces[touched]]))
-    return np.sqrt(np.minimum(most / np.maximum(surface, TINY), MOST_GROWTH**2))
 
 
 def _within_parts(
