@@ -147,6 +147,12 @@ def test_same_name_goes_before_another_spelling() -> None:
     assert weights(("mouthOpen",), {"jawOpen": 1}) == {"mouthOpen": 1}
 
 
+def test_name_without_a_number_goes_before_one_with() -> None:
+    lids = ("eyeUpperClose_25_L", "eyeUpperClose_L", "eyeUpperClose_R2")
+    assert weights(lids, {"blink": 1}) == {"eyeUpperClose_L": 1, "eyeUpperClose_R2": 1}
+    assert weights(("a.jawOpen1", "a1.jawOpen"), {"JawOpen": 1}) == {"a1.jawOpen": 1}
+
+
 def test_names_of_nobody_match_only_themselves() -> None:
     assert weights(("Smoking", "jawOpen"), {"Smoking": 0.3, "smoke": 1}) == {"Smoking": 0.3}
 

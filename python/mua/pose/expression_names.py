@@ -18,8 +18,8 @@ from mua.pose.expression_vocabulary import (
     PAIRS_AND_HALVES,
     VISEMES,
     VRM,
-    is_own_spelling,
     known_expression,
+    likeness,
 )
 
 # For each expression, sets of others that stand for it; the first of which an avatar has any is taken.
@@ -72,9 +72,9 @@ _matched = lru_cache(maxsize=256)(match_expressions)  # whoever sets weights set
 
 
 def rows_of(names: Sequence[str]) -> dict[str, int]:
-    """The row of each known expression among an avatar's; one in its own spelling goes before one of like meaning."""
+    """The row of each known expression among an avatar's: of several names for it, that of the nearest."""
     rows: dict[str, int] = {}
-    for row in sorted(range(len(names)), key=lambda row: not is_own_spelling(names[row])):
+    for row in sorted(range(len(names)), key=lambda row: likeness(names[row])):
         known = known_expression(names[row])
         if known is not None:
             rows.setdefault(known, row)

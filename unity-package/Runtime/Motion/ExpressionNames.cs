@@ -94,22 +94,33 @@ namespace Mua.Motion
             return direct;
         }
 
-        /// <summary>The row of each known expression; one in its own spelling goes before one of like meaning.</summary>
+        /// <summary>The row of each known expression: of several names for it, that of the nearest.</summary>
         private static Dictionary<string, int> Rows(IReadOnlyList<string> avatar)
         {
             var rows = new Dictionary<string, int>();
-            foreach (bool first in new[] { true, false })
+            for (int likeness = 0; likeness < 4; likeness++)
             {
                 for (int row = 0; row < avatar.Count; row++)
                 {
-                    string known = Known(avatar[row]);
-                    if (known != null && BySpelling.ContainsKey(Spelling(avatar[row])) == first && !rows.ContainsKey(known))
+                    string known = Likeness(avatar[row]) == likeness ? Known(avatar[row]) : null;
+                    if (known != null && !rows.ContainsKey(known))
                     {
                         rows.Add(known, row);
                     }
                 }
             }
             return rows;
+        }
+
+        /// <summary>0 for another spelling of an expression's name, 2 for one with the same meaning; 1 more for a number.</summary>
+        private static int Likeness(string name)
+        {
+            bool isNumbered = false;
+            for (int i = name.LastIndexOf('.') + 1; i < name.Length; i++)
+            {
+                isNumbered |= char.IsDigit(name, i);
+            }
+            return (BySpelling.ContainsKey(Spelling(name)) ? 0 : 2) + (isNumbered ? 1 : 0);
         }
 
         /// <summary>What an avatar has of the first set that stands for an expression.</summary>

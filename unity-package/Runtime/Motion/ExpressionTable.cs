@@ -113,9 +113,9 @@ namespace Mua.Motion
             { "eye_r_look_up", "eyeLookUpRight" }, { "eye_r_look_down", "eyeLookDownRight" }, { "v_open", "viseme_aa" },
             { "v_explosive", "viseme_PP" }, { "v_dental_lip", "viseme_FF" }, { "v_tight_o", "viseme_ou" },
             { "v_wide", "viseme_E" }, { "v_affricate", "viseme_CH" }, { "eye_blink", "blink" },
-            { "eye_closed", "blink" }, { "eye_brow_down", "browDown" }, { "eye_brow_up", "browOuterUp" },
-            { "lip_a", "aa" }, { "lip_i", "ih" }, { "lip_u", "ou" }, { "lip_e", "ee" }, { "lip_o", "oh" },
-            { "relax", "relaxed" }, { "surprise", "surprised" },
+            { "eye_closed", "blink" }, { "eye_upper_close", "blink" }, { "eye_brow_down", "browDown" },
+            { "eye_brow_up", "browOuterUp" }, { "lip_a", "aa" }, { "lip_i", "ih" }, { "lip_u", "ou" },
+            { "lip_e", "ee" }, { "lip_o", "oh" }, { "relax", "relaxed" }, { "surprise", "surprised" },
         };
 
         /// <summary>Sets of others that stand for an expression, each with its share.</summary>

@@ -75,16 +75,20 @@ export function weighted(matrix, weights) {
   });
 }
 
-/** The row of each known expression among an avatar's; one in its own spelling goes before one of like meaning. */
+/** The row of each known expression among an avatar's: of several names for it, that of the nearest. */
 function rowsOf(/** @type {string[]} */ names) {
   const rows = new Map();
-  const own = names.map((name) => BY_SPELLING.has(spelt(name)));
-  for (const first of [true, false])
-    for (const [row, name] of names.entries()) {
-      const known = own[row] === first ? knownExpression(name) : undefined;
-      if (known && !rows.has(known)) rows.set(known, row);
-    }
+  const order = names.map((name, row) => ({ row, name, likeness: likeness(name) }));
+  for (const { row, name } of order.sort((a, b) => a.likeness - b.likeness)) {
+    const known = knownExpression(name);
+    if (known && !rows.has(known)) rows.set(known, row);
+  }
   return rows;
+}
+
+/** 0 for another spelling of an expression's name, 2 for one with the same meaning, one more where it has a number. */
+function likeness(/** @type {string} */ name) {
+  return 2 * Number(!BY_SPELLING.has(spelt(name))) + Number(/\p{Nd}/u.test(name.split(".").at(-1) ?? ""));
 }
 
 /** What an avatar has of the first set that stands for an expression. @param {string | undefined} known @param {Map<string, number>} rows @returns {[string, number][]} */
