@@ -127,5 +127,5 @@ def require_expressions(names: Sequence[str], named: Mapping[str, float], *, fil
     """Raises InputError for an expression that moves none of those of the avatar of a file."""
     for name in named:
         if not set_weights(names, {name: 1.0}):
-            held = listed([*names]) or "no expressions"
+            held = listed(names) or "no expressions"
             raise InputError(f"--expressions has {name!r}; {file} has {held}")
