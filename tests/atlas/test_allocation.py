@@ -10,6 +10,7 @@ from people import upright
 from mua.arrays import Array
 from mua.atlas.surfaces import Surfaces
 from mua.atlas.uv import build_atlas
+from mua.rig.expressions import Expressions
 from mua.rig.texel_map import build_texel_map
 
 SIZE = 256
@@ -47,6 +48,21 @@ def test_one_chart_is_finer_where_its_texture_has_detail() -> None:
     surfaces = surfaces_of(patch(16, at=0, uv=WHOLE), images=(image,))
     busy = middles(surfaces)[:, 0] < 0.5
     assert texels_of(surfaces, busy) > 1.3 * texels_of(surfaces, ~busy)
+
+
+def test_what_an_expression_makes_larger_gets_more_texels() -> None:
+    surfaces = surfaces_of(patch(8, at=0, uv=WHOLE), patch(8, at=2, uv=WHOLE), images=(NOISE, NOISE))
+    lid = np.flatnonzero(surfaces.vertices[:, 0] < 1.5)
+    closes = Expressions(
+        names=("blink",),
+        starts=np.array([0, len(lid)], np.int32),
+        vertices=lid.astype(np.int32),
+        offsets=(surfaces.vertices[lid] * [0, 3, 0]).astype(np.float32),  # four times as high
+    )
+    first = middles(surfaces)[:, 0] < 1.5
+    moving = replace(surfaces, expressions=closes)
+    assert texels_of(moving, first) > 1.5 * texels_of(surfaces, first)
+    assert texels_of(moving, ~first) > 0.3 * texels_of(surfaces, ~first)
 
 
 def test_what_others_hide_gets_fewer_texels() -> None:

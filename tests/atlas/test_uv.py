@@ -167,6 +167,13 @@ def test_unwrap_gives_every_triangle_texels_of_its_own() -> None:
     np.testing.assert_allclose(colours[inside, 0], 255 * place[inside, 0], atol=ROUNDED)
 
 
+@pytest.mark.parametrize("width", [1e-4, 1e-3, 100])  # lashes of a head alone, and a figure in centimetres
+def test_unwrap_cuts_surfaces_of_any_size(width: float) -> None:
+    surfaces = surfaces_of(patch(4, at=0, uv=uv_map(1, 1, at=(0, 0)), width=width), images=(ramp(16),))
+    texels, _ = texels_and_colours(build_atlas(surfaces, uv="unwrap", size=64))
+    assert set(texels.triangles.tolist()) == set(range(32))
+
+
 def test_charts_of_uneven_density_become_even() -> None:
     coarse, fine = uv_map(0.05, 0.05, at=(0, 0)), uv_map(0.9, 0.3, at=(0.1, 0.1))
     patches = [patch(1, at=2 * k, uv=fine if k > 7 else coarse) for k in range(10)]

@@ -95,6 +95,18 @@ def test_targets_of_one_name_in_several_meshes_are_one_expression(tmp_path: Path
     assert len(surfaces.vertices) == 32
 
 
+@pytest.mark.parametrize(("size", "noted"), [(1e-3, True), (0.2, False)])
+def test_pieces_that_are_a_point_at_rest_are_noted(tmp_path: Path, size: float, noted: bool) -> None:
+    glb = with_targets(["open"], [UP])
+    star = {"attributes": primitive(glb)["attributes"] | {"POSITION": glb.accessor(size * POINTS)}}
+    star |= {"indices": primitive(glb)["indices"], "targets": [{"POSITION": glb.accessor((1 - size) * POINTS)}]}
+    glb.json["meshes"].append({"name": "star", "primitives": [star], "extras": {"targetNames": ["cheer"]}})
+    glb.json["nodes"].append({"mesh": 1, "skin": 0, "name": "star"})
+    glb.json["scenes"][0]["nodes"].append(4)
+    note = "Pieces that are next to a point at rest have no texels and stay unseen in expressions: cheer."
+    assert (note in read(glb, tmp_path).notes) == noted
+
+
 def test_sparse_and_quantised_targets(tmp_path: Path) -> None:
     glb = body()
     rows = glb.view(TOP.astype("<u2").tobytes())

@@ -8,7 +8,7 @@ from bvh_files import BVH
 from synthetic_avatar import synthetic_avatar
 
 from mua.errors import InputError
-from mua.player.motion import named_clip, player_clips
+from mua.player.motion import named_clip, player_clips, require_expressions
 
 FILE = Path("a.muaavatar")
 
@@ -41,3 +41,10 @@ def test_refuses_an_avatar_without_clips_and_a_name_that_is_none() -> None:
     assert named_clip(avatar.clips, "wave", source=FILE) is avatar.clips[0]
     with pytest.raises(InputError, match=r"--clip is 'jump'; a\.muaavatar holds wave"):
         named_clip(avatar.clips, "jump", source=FILE)
+
+
+def test_names_some_expressions_of_an_avatar_that_lacks_one() -> None:
+    names = [f"shape {number}" for number in range(20)]
+    require_expressions(names, {"shape 19": 1}, file=Path("a.muaavatar"))
+    with pytest.raises(InputError, match=r"^--expressions has 'smoke'; a\.muaavatar has shape 0, .* and 12 more$"):
+        require_expressions(names, {"smoke": 1}, file=Path("a.muaavatar"))

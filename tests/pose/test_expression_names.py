@@ -5,9 +5,9 @@ import pytest
 
 from mua.arrays import Array
 from mua.pose.expression_names import STAND_INS, match_expressions, set_weights
-from mua.pose.expression_vocabulary import ARKIT, NAMES, VISEMES, VRM, known_expression
+from mua.pose.expression_vocabulary import ARKIT, NAMES, PAIRS_AND_HALVES, VISEMES, VRM, known_expression
 
-EVERY = (*ARKIT, *VRM, *VISEMES)
+EVERY = (*ARKIT, *VRM, *VISEMES, *PAIRS_AND_HALVES)
 
 
 def weights(avatar: tuple[str, ...], source: dict[str, float]) -> dict[str, float]:
@@ -30,7 +30,7 @@ def test_vocabularies_have_their_published_sizes() -> None:
 
 @pytest.mark.parametrize("name", EVERY)
 def test_every_name_is_known_in_usual_spellings(name: str) -> None:
-    snake = "".join(f"_{c.lower()}" if c.isupper() and name in ARKIT else c for c in name)
+    snake = "".join(f"_{c.lower()}" if c.isupper() and name in (*ARKIT, *PAIRS_AND_HALVES) else c for c in name)
     short = name.replace("Left", "_L").replace("Right", "_R") if name.endswith(("Left", "Right")) else name
     for spelt in (name, name[0].upper() + name[1:], short, f"blendShape1.{name}", snake):
         assert known_expression(spelt) == name, spelt
@@ -57,8 +57,22 @@ def test_every_name_is_known_in_usual_spellings(name: str) -> None:
         ("PP", "viseme_PP"),
         ("nn", "viseme_nn"),
         ("まばたき", "blink"),
-        ("EyeClosedLeft", "eyeBlinkLeft"),
+        ("EyeClosedLeft", "blinkLeft"),
         ("Eye Blink Left", "eyeBlinkLeft"),
+        ("AU_04_BrowLowerer", "browDown"),  # Rocketbox
+        ("AU_02_L_OuterBrowRaiser", "browOuterUpLeft"),
+        ("lipCornerPuller_L", "mouthSmileLeft"),  # Meta's face tracking
+        ("eyesClosedR", "blinkRight"),
+        ("eyesLookLeftR", "eyeLookInRight"),
+        ("lipFunnelerLB", "mouthFunnelLowerLeft"),
+        ("LeftBrowLowerer", "browDownLeft"),  # Roblox
+        ("Facial_Blends.NoseScrunch_Left", "noseSneerLeft"),  # Fuse
+        ("Brow_Raise_Inner_L", "browInnerUpLeft"),  # Character Creator
+        ("Eye_L_Look_R", "eyeLookInLeft"),
+        ("face_shapes.ai_browDown_L", "browDownLeft"),
+        ("face_surprise", "surprised"),
+        ("left", None),
+        ("VLeft", None),
         ("Fcl_EYE_Iris_Hide", None),
         ("Smoking", None),
         ("", None),
@@ -101,6 +115,17 @@ def test_vrm_drives_arkit() -> None:
     assert weights(("viseme_aa", *ARKIT), {"aa": 1}) == {"viseme_aa": 1}
 
 
+def test_both_sides_as_one_and_one_side_of_one_stand_for_each_other() -> None:
+    assert weights(("browDown",), {"browDownLeft": 1, "browDownRight": 0.5}) == {"browDown": 0.75}
+    assert weights(ARKIT, {"browLowerer": 0.5}) == {"browDownLeft": 0.5, "browDownRight": 0.5}
+    halves = ("innerBrowRaiserL", "innerBrowRaiserR")
+    assert weights(halves, {"browInnerUp": 0.5}) == dict.fromkeys(halves, 0.5)
+    assert weights(ARKIT, {"innerBrowRaiserL": 1, "innerBrowRaiserR": 0.5}) == {"browInnerUp": 0.75}
+    quarters = {f"lipFunneler{corner}": 0.5 for corner in ("LB", "LT", "RB", "RT")}
+    assert weights(ARKIT, quarters) == {"mouthFunnel": 0.5}
+    assert weights(tuple(quarters), {"mouthFunnel": 0.5}) == quarters
+
+
 def test_visemes_and_vowels_stand_for_each_other() -> None:
     for vowel, viseme in {"aa": "viseme_aa", "ee": "viseme_E", "ih": "viseme_I", "oh": "viseme_O"}.items():
         assert weights(VRM, {viseme: 0.5}) == {vowel: 0.5}
@@ -120,6 +145,12 @@ def test_same_name_goes_before_another_spelling() -> None:
     assert weights(("A", "aa", "mouthOpen"), {"A": 1}) == {"A": 1}
     assert weights(("mouthOpen", "aa"), {"A": 1}) == {"aa": 1}
     assert weights(("mouthOpen",), {"jawOpen": 1}) == {"mouthOpen": 1}
+
+
+def test_name_without_a_number_goes_before_one_with() -> None:
+    lids = ("eyeUpperClose_25_L", "eyeUpperClose_L", "eyeUpperClose_R2")
+    assert weights(lids, {"blink": 1}) == {"eyeUpperClose_L": 1, "eyeUpperClose_R2": 1}
+    assert weights(("a.jawOpen1", "a1.jawOpen"), {"JawOpen": 1}) == {"a1.jawOpen": 1}
 
 
 def test_names_of_nobody_match_only_themselves() -> None:

@@ -1,7 +1,8 @@
 """How fine each triangle is to be drawn, for what its texture shows and for what of it is seen, the face before all.
 
 Within the head, the hands and the rest of the body, the widths of texels are those at which the errors of all triangles
-together are least at the same number of texels. Errors are measured on the file's own textures.
+together are least at the same number of texels. Errors are measured on the file's own textures, where an expression
+makes a triangle largest.
 """
 
 from collections.abc import Collection
@@ -15,6 +16,7 @@ from mua.atlas.surfaces import Surfaces
 from mua.atlas.visibility import seen_shares
 from mua.rig.body_parts import BODY_PARTS
 from mua.rig.charts import areas
+from mua.rig.growth import largest_areas
 
 TEXELS = 110_000  # of an avatar at 384 texels, for which widths are chosen
 OCTAVES = np.arange(-4, 3)  # widths at which losses are measured, of the mean
@@ -27,6 +29,7 @@ FACE_SIZE = 2.0  # standard deviation about the middle of the face, over that of
 LEAST_FINE = {"head": 0.35, "hands": 0.7, "body": 0.7}  # of the mean, in length; for hidden surface HIDDEN_FINE of it
 HIDDEN_FINE = 0.7
 PLAIN, PLAIN_FINE = 1e-5, 0.87  # loss of a head's texture below which it shows nothing, and how much coarser it then is
+MOST_GROWTH = 4.0  # in length, that expressions count for
 SMOOTHING = 3  # rounds over neighbours
 HALVINGS = 30  # of the range in which the price of a texel is sought
 DEAREST = 2.0**10  # and the cheapest is 2^-60: such prices give the widest and the narrowest texels
@@ -52,11 +55,13 @@ def wanted_fineness(
     seen, front = (samples.means(share, len(surface)) for share in shares)
     nearness = _nearness(positions.mean(axis=1), surface * front * (parts == BODY_PARTS.index("head")))
     face = 1 + (FACE - 1) * nearness * np.minimum(front / FRONTAL, 1)
+    largest = largest_areas(surfaces.expressions, surfaces.vertices, surfaces.faces)
+    larger = np.sqrt(np.minimum(largest / np.maximum(surface, TINY), MOST_GROWTH**2))
     # By its cube, since at an error in proportion to the width the best width falls with the cube root of the weight.
-    weight = np.maximum(seen / USUAL, LEAST_SEEN) * face**3
+    weight = np.maximum(seen / USUAL, LEAST_SEEN) * (face * larger) ** 3
     errors = _smooth((_finely(losses) + SHAPE * WIDTHS) * weight[:, None], surface, surfaces.faces)
     # What lies just behind a face is fine as well: wide splats of the inside of a mouth would shine through the lips.
-    least = (1 + (FACE - 1) * nearness) * np.where(seen < HIDDEN, HIDDEN_FINE, 1)
+    least = (1 + (FACE - 1) * nearness) * np.where(seen < HIDDEN, HIDDEN_FINE, 1) * larger
     finer = _within_parts(errors, surface, surfaces.faces, least=least, parts=parts)
     head = parts == BODY_PARTS.index("head")
     if "head" not in chosen and surface @ (head * losses[:, OCTAVES == 0][:, 0]) <= PLAIN * surface[head].sum():

@@ -163,8 +163,10 @@ def _cut(
 ) -> Array:
     """New UVs [n, 3, 2] in the unit square, cut and flattened by xatlas, for the faces that need them."""
     kept, index = np.unique(source.surfaces.faces[anew], return_inverse=True)
+    size = np.sqrt(areas(source.positions[anew]).mean())  # xatlas drops what is smaller than 1e-7 square units: lashes
+    vertices = np.ldexp(source.surfaces.vertices[kept], -np.frexp(size)[1])
     atlas = xatlas.Atlas()
-    atlas.add_mesh(source.surfaces.vertices[kept].astype(np.float32), index.reshape(-1, 3).astype(np.uint32))
+    atlas.add_mesh(vertices.astype(np.float32), index.reshape(-1, 3).astype(np.uint32))
     atlas.generate()
     _, corners, uv = atlas.get_mesh(0)
     flat = uv[corners].astype(np.float64) * (atlas.width, atlas.height)

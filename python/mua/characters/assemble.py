@@ -13,7 +13,7 @@ from mua.characters.bind_pose import Bind, bind_pose
 from mua.characters.collapsed import without_collapsed
 from mua.characters.correction import corrected
 from mua.characters.expression_file import with_expression_names
-from mua.characters.expressions import fingerprints, joined_targets, with_weights
+from mua.characters.expressions import fingerprints, joined_targets, unfolding, with_weights
 from mua.characters.facing import AS_SHOWN, Facing
 from mua.characters.gaze import GAZE, with_gaze
 from mua.characters.messages import UNHELD, Messages
@@ -90,6 +90,7 @@ def assemble(
     scene = gazing
     size_notes = tuple(f"{note} {OTHER_SIZE}" for note in change.size_notes)
     mesh = _outward(_weld(mesh))
+    unseen = () if mesh.expressions is None else unfolding(mesh.expressions, mesh.vertices, mesh.faces)
     rigged = rigid_skeleton(scene, bind)
     joint_of_node = np.zeros(len(scene.parents), np.int32)
     joint_of_node[rigged.nodes] = np.arange(len(rigged.nodes))
@@ -111,7 +112,7 @@ def assemble(
         source=Source(scene, rigged.nodes),
         corner_colors=None if (mesh.colors == 1).all() else mesh.colors,
         roles=roles_of(scene, rigged),
-        notes=(*scene.notes, *_rigid_parts(scene), *size_notes, *change.notes, *mesh.notes, *rigged.notes),
+        notes=(*scene.notes, *_rigid_parts(scene), *size_notes, *change.notes, *mesh.notes, *unseen, *rigged.notes),
         unit=change.unit,
         size_notes=size_notes,
     )

@@ -9,10 +9,15 @@ from mua.arrays import Array
 from mua.characters.messages import listed
 from mua.pose.clip import Clip
 from mua.pose.expression_names import match_expressions
+from mua.rig.charts import areas
 from mua.rig.expressions import Expressions
+from mua.rig.growth import moved_areas
 from mua.scene import Motion, Target
 
 STILL = 1e-5  # of the character's size: a target that moves a vertex less does not move it (0.02 mm on a person)
+POINT = 1e-4  # of its area in an expression: a triangle that is smaller at rest has no texel
+SHOWN = 1e-4  # of the figure's surface: what an expression brings out is worth a sentence
+UNFOLDING = "Pieces that are next to a point at rest have no texels and stay unseen in expressions: "
 APART = 1e-4  # of the character's size: vertices at one place whose targets differ by this are two, as on lips
 
 
@@ -50,6 +55,16 @@ def _summed(targets: Sequence[Target]) -> tuple[Array, Array]:
     offsets = np.zeros((len(vertices), 3))
     np.add.at(offsets, row, np.concatenate([target.offsets for target in targets]))
     return vertices, offsets
+
+
+def unfolding(expressions: Expressions, vertices: Array, faces: Array) -> tuple[str, ...]:
+    """A sentence on expressions that bring out pieces which are next to a point at rest: cheeks that blush, stars."""
+    rest = areas(vertices[faces])
+    found = []
+    for name, (moved, area) in zip(expressions.names, moved_areas(expressions, vertices, faces), strict=True):
+        if area[rest[moved] < POINT * area].sum() > SHOWN * rest.sum():
+            found.append(name)
+    return (f"{UNFOLDING}{listed(found)}.",) if found else ()
 
 
 def fingerprints(expressions: Expressions, vertices: int, *, size: float) -> Array:

@@ -1,5 +1,7 @@
 """What a reader leaves out or changes, as one sentence for each kind of thing."""
 
+from collections.abc import Sequence
+
 UNHELD = "Meshes that no joint moves are left out: {}."
 SHOWN = 8  # names that a sentence lists before it counts the rest
 
@@ -21,7 +23,7 @@ class Messages:
         return tuple(sentence.format(listed(names)) for sentence, names in self._names.items())
 
 
-def listed(names: list[str]) -> str:
+def listed(names: Sequence[str]) -> str:
     """Names as an enumeration: the first eight, and how many there are beyond."""
     shown = ", ".join(names[:SHOWN])
     return shown if len(names) <= SHOWN else f"{shown} and {len(names) - SHOWN} more"

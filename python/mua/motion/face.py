@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from mua.arrays import Array
+from mua.characters.messages import listed
 from mua.errors import InputError
 from mua.motion.live_link import read_live_link
 from mua.motion.read import read_motion
@@ -14,8 +15,6 @@ from mua.motion.source import SourceMotion
 from mua.pose.clip import Clip
 from mua.pose.expression_names import match_expressions
 from mua.pose.resample import frames_at
-
-SHOWN = 8  # names that a sentence lists
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,11 +51,11 @@ def with_face(
     face = read_face(path)
     matrix = match_expressions(names, face.names)
     if not matrix.any():
-        held = _listed(names)
-        raise InputError(f"--face {path}: moves {_listed(face.names)}, of which the character has none; it has {held}")
+        held = listed(names)
+        raise InputError(f"--face {path}: moves {listed(face.names)}, of which the character has none; it has {held}")
     weights = np.clip(face.weights @ matrix.T, 0, 1)
     unused = [name for name, column in zip(face.names, matrix.T, strict=True) if not column.any()]
-    notes = [f"{path.name}: the character has no expression for {_listed(unused)}."] if unused else []
+    notes = [f"{path.name}: the character has no expression for {listed(unused)}."] if unused else []
     return [replace(clip, expressions=_during(clip, weights, face.rate)) for clip in clips], notes
 
 
@@ -85,8 +84,3 @@ def _during(clip: Clip, weights: Array, rate: float) -> Array | None:
     still = Clip("", rate, np.zeros((len(weights), 0, 4)), np.zeros((len(weights), 0, 3)))
     found[frames_at(still, clip.rate) :] = 0
     return found if found.any() else None
-
-
-def _listed(names: Sequence[str]) -> str:
-    shown = ", ".join(names[:SHOWN])
-    return shown if len(names) <= SHOWN else f"{shown} and {len(names) - SHOWN} more"

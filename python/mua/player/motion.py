@@ -8,6 +8,7 @@ import numpy as np
 
 from mua.arrays import Array
 from mua.asset.avatar import Avatar
+from mua.characters.messages import listed
 from mua.errors import InputError
 from mua.live.live import Live
 from mua.live.receiver import Receiver
@@ -124,5 +125,5 @@ def require_expressions(names: Sequence[str], named: Mapping[str, float], *, fil
     """Raises InputError for an expression that moves none of those of the avatar of a file."""
     for name in named:
         if not set_weights(names, {name: 1.0}):
-            held = ", ".join(names) or "no expressions"
+            held = listed(names) or "no expressions"
             raise InputError(f"--expressions has {name!r}; {file} has {held}")

@@ -12,11 +12,19 @@ from functools import lru_cache
 import numpy as np
 
 from mua.arrays import Array
-from mua.pose.expression_vocabulary import ARKIT, NAMES, VISEMES, VRM, is_own_spelling, known_expression
+from mua.pose.expression_vocabulary import (
+    ARKIT,
+    NAMES,
+    PAIRS_AND_HALVES,
+    VISEMES,
+    VRM,
+    known_expression,
+    likeness,
+)
 
 # For each expression, sets of others that stand for it; the first of which an avatar has any is taken.
 STAND_INS: Mapping[str, Sequence[Mapping[str, float]]] = NAMES["standIns"]
-_VOCABULARIES = (VRM, VISEMES, ARKIT)  # where a source has several, an expression follows the first
+_VOCABULARIES = (VRM, VISEMES, ARKIT, PAIRS_AND_HALVES)  # where a source has several, an expression follows the first
 
 
 def match_expressions(
@@ -64,9 +72,9 @@ _matched = lru_cache(maxsize=256)(match_expressions)  # whoever sets weights set
 
 
 def rows_of(names: Sequence[str]) -> dict[str, int]:
-    """The row of each known expression among an avatar's; one in its own spelling goes before one of like meaning."""
+    """The row of each known expression among an avatar's: of several names for it, that of the nearest."""
     rows: dict[str, int] = {}
-    for row in sorted(range(len(names)), key=lambda row: not is_own_spelling(names[row])):
+    for row in sorted(range(len(names)), key=lambda row: likeness(names[row])):
         known = known_expression(names[row])
         if known is not None:
             rows.setdefault(known, row)

@@ -14,14 +14,27 @@ namespace Mua.Motion
         private static readonly Regex Word = new Regex(
             @"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+|[\p{L}\p{Nl}\p{No}\p{Cs}-[A-Za-z]]+", RegexOptions.CultureInvariant);
 
+        private static readonly string[] Sides = { "left", "right" };
         private static readonly Dictionary<string, string> BySpelling = Spelt();
         private static readonly Dictionary<string, string> ByOtherName = OtherNames();
 
-        /// <summary>The expression of ARKit, VRM or Oculus' visemes that a name means, in whatever spelling; else null.</summary>
+        /// <summary>The expression of a vocabulary that a name means, in whatever spelling; else null.</summary>
         public static string Known(string name)
         {
             string spelling = Spelling(name);
-            return BySpelling.TryGetValue(spelling, out string known) || ByOtherName.TryGetValue(spelling, out known) ? known : null;
+            if (BySpelling.TryGetValue(spelling, out string known) || ByOtherName.TryGetValue(spelling, out known))
+            {
+                return known;
+            }
+            foreach (string side in Sides)
+            {
+                if (spelling.EndsWith(side, StringComparison.Ordinal) &&
+                    ByOtherName.TryGetValue(spelling.Substring(0, spelling.Length - side.Length), out string both))
+                {
+                    return BySpelling.TryGetValue(Spelling(both + "_" + side), out known) ? known : null;
+                }
+            }
+            return null;
         }
 
         /// <summary>
@@ -81,22 +94,33 @@ namespace Mua.Motion
             return direct;
         }
 
-        /// <summary>The row of each known expression; one in its own spelling goes before one of like meaning.</summary>
+        /// <summary>The row of each known expression: of several names for it, that of the nearest.</summary>
         private static Dictionary<string, int> Rows(IReadOnlyList<string> avatar)
         {
             var rows = new Dictionary<string, int>();
-            foreach (bool first in new[] { true, false })
+            for (int likeness = 0; likeness < 4; likeness++)
             {
                 for (int row = 0; row < avatar.Count; row++)
                 {
-                    string known = Known(avatar[row]);
-                    if (known != null && BySpelling.ContainsKey(Spelling(avatar[row])) == first && !rows.ContainsKey(known))
+                    string known = Likeness(avatar[row]) == likeness ? Known(avatar[row]) : null;
+                    if (known != null && !rows.ContainsKey(known))
                     {
                         rows.Add(known, row);
                     }
                 }
             }
             return rows;
+        }
+
+        /// <summary>0 for another spelling of an expression's name, 2 for one with the same meaning; 1 more for a number.</summary>
+        private static int Likeness(string name)
+        {
+            bool isNumbered = false;
+            for (int i = name.LastIndexOf('.') + 1; i < name.Length; i++)
+            {
+                isNumbered |= char.IsDigit(name, i);
+            }
+            return (BySpelling.ContainsKey(Spelling(name)) ? 0 : 2) + (isNumbered ? 1 : 0);
         }
 
         /// <summary>What an avatar has of the first set that stands for an expression.</summary>
@@ -124,21 +148,34 @@ namespace Mua.Motion
             return Array.FindIndex(ExpressionTable.Vocabularies, names => Array.IndexOf(names, known) >= 0);
         }
 
-        /// <summary>A name in one spelling, less words before it that only say whose it is.</summary>
+        /// <summary>A name in one spelling, less words before it that only say whose it is; its side comes last.</summary>
         private static string Spelling(string name)
         {
             string own = name.Normalize(NormalizationForm.FormKC);
-            MatchCollection words = Word.Matches(own.Substring(own.LastIndexOf('.') + 1));
-            var spelling = new StringBuilder();
-            for (int i = 0; i < words.Count; i++)
+            var words = new List<string>();
+            foreach (Match word in Word.Matches(own.Substring(own.LastIndexOf('.') + 1)))
             {
-                string word = words[i].Value.ToLowerInvariant();
-                bool isLast = i == words.Count - 1;
-                bool isOwner = spelling.Length == 0 && !isLast && Array.IndexOf(ExpressionTable.Owners, word) >= 0;
-                bool isSide = spelling.Length > 0 && isLast && (word == "l" || word == "r");
-                spelling.Append(isOwner ? "" : isSide ? word == "l" ? "left" : "right" : word);
+                words.Add(word.Value.ToLowerInvariant());
             }
-            return spelling.ToString();
+            while (words.Count > 1 && Array.IndexOf(ExpressionTable.Owners, words[0]) >= 0)
+            {
+                words.RemoveAt(0);
+            }
+            if (words.Count > 1 && Side(words[0]) != null)
+            {
+                words.Add(words[0]);
+                words.RemoveAt(0);
+            }
+            if (words.Count > 1)
+            {
+                words[words.Count - 1] = Side(words[words.Count - 1]) ?? words[words.Count - 1];
+            }
+            return string.Concat(words);
+        }
+
+        private static string Side(string word)
+        {
+            return Array.Find(Sides, side => word == side || word == side.Substring(0, 1));
         }
 
         private static Dictionary<string, string> Spelt()

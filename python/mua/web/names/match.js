@@ -6,8 +6,10 @@ const WORD = /[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+|(?:(?![A-Za-z])[\p{L}\p{N
 const SIDE = new Map([
   ["l", "left"],
   ["r", "right"],
+  ["left", "left"],
+  ["right", "right"],
 ]);
-const VOCABULARIES = [TABLE.vrm, TABLE.visemes, TABLE.arkit]; // where a source has several, an expression follows the first
+const VOCABULARIES = [TABLE.vrm, TABLE.visemes, TABLE.arkit, TABLE.pairsAndHalves]; // where a source has several, an expression follows the first
 const STAND_INS = new Map(Object.entries(TABLE.standIns));
 const BY_SPELLING = new Map(VOCABULARIES.flat().map((name) => [spelt(name), name]));
 const BY_OTHER_NAME = new Map(Object.entries(TABLE.otherNames).map(([other, name]) => [spelt(other), name]));
@@ -17,6 +19,7 @@ function spelt(/** @type {string} */ name) {
   const own = name.normalize("NFKC").split(".").at(-1) ?? "";
   const words = (own.match(WORD) ?? []).map((word) => word.toLowerCase());
   while (words.length > 1 && TABLE.owners.includes(words[0])) words.shift();
+  if (words.length > 1 && SIDE.has(words[0])) words.push(/** @type {string} */ (words.shift()));
   if (words.length > 1) words.push(/** @type {string} */ (withSide(words.pop())));
   return words.join("");
 }
@@ -25,10 +28,13 @@ function withSide(/** @type {string | undefined} */ word) {
   return SIDE.get(word ?? "") ?? word;
 }
 
-/** The expression of ARKit, VRM or Oculus' visemes that a name means, in whatever spelling. @returns {string | undefined} */
+/** The expression of a vocabulary that a name means, in whatever spelling. @returns {string | undefined} */
 export function knownExpression(/** @type {string} */ name) {
   const spelling = spelt(name);
-  return BY_SPELLING.get(spelling) ?? BY_OTHER_NAME.get(spelling);
+  const known = BY_SPELLING.get(spelling) ?? BY_OTHER_NAME.get(spelling);
+  const [, whole, side] = (!known && spelling.match(/^(.*)(left|right)$/)) || [];
+  const both = BY_OTHER_NAME.get(whole ?? "");
+  return both ? BY_SPELLING.get(spelt(`${both}_${side}`)) : known;
 }
 
 /** How much [E, S] each expression of a source moves each of an avatar. @param {string[]} names of the avatar's @param {string[]} source @returns {Float32Array} */
@@ -69,16 +75,20 @@ export function weighted(matrix, weights) {
   });
 }
 
-/** The row of each known expression among an avatar's; one in its own spelling goes before one of like meaning. */
+/** The row of each known expression among an avatar's: of several names for it, that of the nearest. */
 function rowsOf(/** @type {string[]} */ names) {
   const rows = new Map();
-  const own = names.map((name) => BY_SPELLING.has(spelt(name)));
-  for (const first of [true, false])
-    for (const [row, name] of names.entries()) {
-      const known = own[row] === first ? knownExpression(name) : undefined;
-      if (known && !rows.has(known)) rows.set(known, row);
-    }
+  const order = names.map((name, row) => ({ row, name, likeness: likeness(name) }));
+  for (const { row, name } of order.sort((a, b) => a.likeness - b.likeness)) {
+    const known = knownExpression(name);
+    if (known && !rows.has(known)) rows.set(known, row);
+  }
   return rows;
+}
+
+/** 0 for another spelling of an expression's name, 2 for one with the same meaning, one more where it has a number. */
+function likeness(/** @type {string} */ name) {
+  return 2 * Number(!BY_SPELLING.has(spelt(name))) + Number(/\p{Nd}/u.test(name.split(".").at(-1) ?? ""));
 }
 
 /** What an avatar has of the first set that stands for an expression. @param {string | undefined} known @param {Map<string, number>} rows @returns {[string, number][]} */
