@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from mua.arrays import Array
+from mua.arrays import Array, unique_rows
 from mua.atlas.surfaces import Surfaces
 from mua.characters.alpha import NOTHING_SAID, Alphas, with_alphas
 from mua.characters.bind_pose import Bind, bind_pose
@@ -317,11 +317,11 @@ def _outward(mesh: _Mesh) -> _Mesh:
 
 def first_of_equal(rows: Array) -> tuple[Array, Array]:
     """Indices of the first of each run of equal rows, in order of appearance, and for each row which it equals."""
-    _, first, inverse = np.unique(rows, axis=0, return_index=True, return_inverse=True)
+    _, first, inverse = unique_rows(rows)
     order = np.argsort(first)
     rank = np.empty(len(order), int)
     rank[order] = np.arange(len(order))
-    return first[order], rank[inverse.reshape(-1)]
+    return first[order], rank[inverse]
 
 
 def _corners(faces: Array, uv: Array, *, uv_faces: Array, face_material: Array) -> tuple[Array, Array]:
