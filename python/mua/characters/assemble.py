@@ -122,13 +122,19 @@ def _middles(mesh: _Mesh, joints: int) -> Array:
         return np.asarray(sums / mass[:, None])
 
 
+def _is_plain(image: Array) -> bool:
+    """Whether an image [H, W, 4] has one colour."""
+    first = image[:1, :1]
+    return bool((image[0] == first).all()) and bool((image == first).all())
+
+
 def _without_outlines(scene: Scene, bind: Bind, mesh: _Mesh) -> tuple[Scene, Bind, _Mesh]:
     """The scene without outlines: one-coloured shells around other parts, wound inside out, that splats would draw."""
     sizes = [len(part.faces) for part in scene.parts]
     plain = [
         p
         for p, part in enumerate(scene.parts)
-        if part.colors is None and np.ptp(scene.materials[part.material].image, axis=(0, 1)).max() == 0
+        if part.colors is None and _is_plain(scene.materials[part.material].image)
     ]
     found = outlines(mesh.vertices, mesh.faces, np.repeat(np.arange(len(sizes)), sizes), plain)
     if not found:
