@@ -55,7 +55,7 @@ def compare_faces(
     expressions, scene = teacher.rig.expressions, source.scene
     if expressions is None:
         return None
-    camera = orbit(_box(scene), screen=SCREEN, azimuth=rest.yaw + AWAY)
+    camera = camera_of(scene, rest)
     of_source, of_splats = _Source(context, scene, rest, camera), _Splats(context, teacher, rest, camera)
     drawn = [(of_source.at_rest, of_splats.at_rest)]
     drawn += [(of_source.expressed(name), of_splats.expressed(number)) for number, name in enumerate(expressions.names)]
@@ -127,6 +127,11 @@ def _with_target(part: Part, name: str) -> Part:
         if target.name == name:
             positions[target.vertices] += target.offsets
     return replace(part, positions=positions)
+
+
+def camera_of(scene: Scene, rest: Moment) -> Camera:
+    """The camera that looks at what expressions move."""
+    return orbit(_box(scene), screen=SCREEN, azimuth=rest.yaw + AWAY)
 
 
 def _box(scene: Scene) -> Array:
