@@ -18,11 +18,10 @@ from mua.avatar.camera import Camera, orbit
 from mua.avatar.rendering import frame_bounds, render_premultiplied
 from mua.baking.check import WITHOUT_FILE, fidelity_of
 from mua.characters.read import read_character
-from mua.fidelity import faces, report
+from mua.fidelity import report
 from mua.fidelity import splats as splat_painting
 from mua.fidelity.canvas import opened
 from mua.fidelity.compare import SCREEN, Fidelity, PoseFidelity, Shot, spread
-from mua.fidelity.face_sheet import face_sheet
 from mua.fidelity.measure import MOST_DECIBELS, Agreement, agreement, worst_place
 from mua.fidelity.painter import Painter
 from mua.fidelity.posing import Poser, skinned
@@ -315,45 +314,3 @@ def test_the_worst_place_is_where_differences_gather() -> None:
     source, other = np.zeros((48, 48, 4)), np.zeros((48, 48, 4))
     source[10:14, 30:34] = other[40, 3] = 1
     assert worst_place(source, other)[:2] in {(c, r) for c in range(30, 34) for r in range(10, 14)}
-
-
-def grinning(tmp_path: Path) -> Character:
-    """A column with two expressions: one leans its upper end over, one lifts it a little."""
-    glb = gltf_files.body()
-    targets = []
-    for offset in ([0.15, 0, 0], [0, 0.05, 0]):
-        moved = np.zeros((16, 3))
-        moved[12:] = offset
-        targets.append({"POSITION": glb.accessor(moved)})
-    gltf_files.primitive(glb)["targets"] = targets
-    glb.json["meshes"][0]["extras"] = {"targetNames": ["lean", "lift"]}
-    return read_character(glb.save(tmp_path / "grin.glb"), atlas_size=256)
-
-
-def test_expressions_look_like_the_files_own_targets(tmp_path: Path) -> None:
-    character = grinning(tmp_path)
-    fidelity, warnings = fidelity_of(character, (), texels=TEXELS, faces=True)
-    assert fidelity is not None
-    assert fidelity.face is not None
-    assert [shot.name for shot in fidelity.face.expressions] == ["lean", "lift"]
-    for shot in fidelity.face.expressions:
-        assert shot.agreement.iou > fidelity.face.rest.agreement.iou - 0.02
-        assert not np.array_equal(shot.source, fidelity.face.rest.source)
-    assert not any("The face" in sentence for sentence in warnings)
-    assert [*report.as_dict(fidelity)["expressions"]] == ["at rest", "lean", "lift"]
-    assert face_sheet(fidelity.face).width == 2 * 3 * faces.SCREEN[0]
-    plain, _ = fidelity_of(character, (), texels=TEXELS)
-    assert plain is not None
-    assert plain.face is None
-
-
-def test_a_wrong_expression_is_measured_and_named(tmp_path: Path) -> None:
-    character = grinning(tmp_path)
-    assert character.expressions is not None
-    wrong = replace(character.expressions, offsets=character.expressions.offsets * np.array([-1, 1, 1], np.float32))
-    fidelity, warnings = fidelity_of(replace(character, expressions=wrong), (), texels=TEXELS, faces=True)
-    assert fidelity is not None
-    assert fidelity.face is not None
-    lean, lift = fidelity.face.expressions
-    assert lean.agreement.iou < lift.agreement.iou - 0.1
-    assert any("The face" in sentence and "lean" in sentence and "lift" not in sentence for sentence in warnings)

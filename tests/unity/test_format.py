@@ -1,6 +1,7 @@
 """The C# reader gives the values of the Python reader bit for bit, and refuses the same files for the same reasons."""
 
 import zlib
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -13,10 +14,13 @@ from synthetic_avatar import sparse_avatar, synthetic_avatar, with_expressions, 
 from tree_edits import edited
 from unpackable import UNPACKABLE
 
-from mua.asset.flatbuffer import FormatError
+from mua.asset.flatbuffer import FormatError, Tree, parse
+from mua.asset.packing import tensors
 from mua.asset.read import decode_tree, parse_checked
 from mua.asset.tensors import Storage
 from mua.asset.write import encode
+from mua.bench.random_avatar import random_avatar
+from mua.student.settings import preset
 
 GOLDEN = Path(__file__).parents[1] / "golden" / "synthetic.muaavatar"
 KEPT = ("packed", "expressions")
@@ -26,6 +30,12 @@ CUTS = 211  # every so many bytes both readers are asked, which the Python reade
 @pytest.fixture(scope="module")
 def content() -> bytes:
     return encode(with_surface(synthetic_avatar()), storage="i8")
+
+
+@pytest.fixture(scope="module")
+def large() -> bytes:
+    """A packed file of megabytes, which the C# reader unpacks by several threads."""
+    return encode(random_avatar(preset("tiny")), storage="packed")
 
 
 def python_answer(content: bytes) -> tuple[str, ...]:
@@ -60,7 +70,35 @@ def test_values_are_those_of_the_python_reader(
     kept = {"golden": GOLDEN} | {f"golden {name}": GOLDEN.with_name(f"{name}.muaavatar") for name in KEPT}
     made = with_expressions(sparse_avatar(2))
     sound = kept[storage].read_bytes() if storage in kept else encode(made, storage=storage)  # type: ignore
-    [path] = write_all(tmp_path, [sound])
+    require_equal_values(csharp, program, tmp_path, sound)
+
+
+def test_values_of_a_large_packed_file_are_those_of_the_python_reader(
+    csharp: CSharp, program: Path, tmp_path: Path, large: bytes
+) -> None:
+    require_equal_values(csharp, program, tmp_path, large)
+
+
+def test_of_many_damaged_tensors_the_first_one_is_named(
+    csharp: CSharp, program: Path, tmp_path: Path, large: bytes
+) -> None:
+    packed = [path for path, tensor in tensors(parse(large)) if tensor["packing"] != "Plain" and len(tensor["data"])]
+    assert len(packed) > 10
+    files = [edited(large, partial(cut_short, paths=packed[at:])) for at in range(len(packed))]
+    expected = [("packed", f"{path}.data") for path in packed]
+    assert [python_answer(file) for file in files] == expected
+    assert csharp_answers(csharp, program, write_all(tmp_path, files)) == expected
+
+
+def cut_short(tree: Tree, paths: list[str]) -> None:
+    """Take the last byte of some packed tensors."""
+    found = dict(tensors(tree))
+    for path in paths:
+        found[path]["data"] = found[path]["data"][:-1]
+
+
+def require_equal_values(csharp: CSharp, program: Path, folder: Path, sound: bytes) -> None:
+    [path] = write_all(folder, [sound])
     expected = values(parse_checked(sound))
     found = {}
     for line in csharp.run(program, "dump", path).splitlines():

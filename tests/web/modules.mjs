@@ -2,7 +2,7 @@
 //   answers        a line for each file: ok, or code, field and sentence as JSON
 //   mutants        the same of files on the standard input, each after its length as four bytes, that also arrive in steps;
 //                  and the most bytes that this process has taken by then
-//   measured RUNS  of a file that is read so often: processor seconds of each, and the most bytes that the first took
+//   measured RUNS  of a file that is read so often: seconds of the processor and by the clock, and the most bytes that the first took
 //   values FRAMES  of the file's first clip, those frames: descriptors, components, joints, boxes; and what the kernels read
 //   expressions FRAMES  of a file: their names, what they move, the reach at every level, weights at frames of the first clip and what shows
 //   stages STEP    of a file that arrives in such steps: how much was there, and what it shows, or code and field of the fault
@@ -222,16 +222,17 @@ async function stages(content, step) {
 
 /** What reading a file takes, so many times. */
 async function measured(file, runs) {
-  const [before, seconds] = [status("VmRSS"), []];
+  const [before, seconds, waited] = [status("VmRSS"), [], []];
   let taken = 0;
   for (let run = 0; run < runs; run++) {
-    const start = process.cpuUsage();
+    const [start, began] = [process.cpuUsage(), performance.now()];
     await read(bytes(file));
+    waited.push((performance.now() - began) / 1e3);
     const { user, system } = process.cpuUsage(start);
     seconds.push((user + system) / 1e6);
     taken ||= peak() - before;
   }
-  return [seconds, taken];
+  return [seconds, waited, taken];
 }
 
 /** Whether the rest is expected soon, after each 100 ms. */

@@ -1,4 +1,4 @@
-"""Print what reading a file takes in each language: processor time and memory.
+"""Print what reading a file takes in each language: time of the processor and by the clock, and memory.
 
 python tools/research/bench_reading.py hero.muaavatar hero_packed.muaavatar [--runs 5]: the readers of Python, C# under
 mono and JavaScript under Node, each in a process of its own that reads the file so many times. It needs what
@@ -17,7 +17,8 @@ sys.path += [str(ROOT / "tests" / name) for name in ("", "fixtures", "unity")]
 
 from csharp import PROGRAMS, RUNTIME, CSharp  # noqa: E402
 
-# Processor seconds of each run and the most bytes that the first one took, as the other readers' programs print them.
+# Seconds of the processor and by the clock of each run, and the most bytes that the first one took; the other readers'
+# programs print the same.
 PYTHON = """
 import json, sys, time
 from mua.asset.read import read
@@ -26,13 +27,14 @@ def status(name):
     lines = open("/proc/self/status").read().splitlines()
     return next(1024 * int(line.split()[1]) for line in lines if line.startswith(name))
 
-before, seconds, taken = status("VmRSS"), [], 0
+before, seconds, waited, taken = status("VmRSS"), [], [], 0
 for _ in range(int(sys.argv[2])):
-    start = time.process_time()
+    start, began = time.process_time(), time.perf_counter()
     read(sys.argv[1])
     seconds.append(time.process_time() - start)
+    waited.append(time.perf_counter() - began)
     taken = taken or status("VmHWM") - before
-print(json.dumps([seconds, taken]))
+print(json.dumps([seconds, waited, taken]))
 """
 
 
@@ -47,15 +49,15 @@ def main() -> None:
         "C#": lambda file: ["mono", program, "measured", file],
         "JavaScript": lambda file: ["node", "--no-warnings", ROOT / "tests" / "web" / "modules.mjs", "measured", file],
     }
-    print("file, reader: ms of the processor, first and median of the others; MB at most; times the file")
+    print("file, reader: ms of the processor, first and median of the others; by the clock; MB at most; times the file")
     for file in given.files:
         size = file.stat().st_size
         for name, command in readers.items():
             line = [str(part) for part in [*command(file), given.runs]]
             ran = subprocess.run(line, capture_output=True, text=True, check=True)
-            (first, *others), taken = json.loads(ran.stdout)
-            usual = statistics.median(others or [first])
-            print(f"{file.name}, {name}: {1e3 * first:.0f}, {1e3 * usual:.0f}; {taken / 1e6:.1f}; {taken / size:.2f}")
+            *kinds, taken = json.loads(ran.stdout)
+            times = [f"{1e3 * one:.0f}, {1e3 * statistics.median(more or [one]):.0f}" for one, *more in kinds]
+            print(f"{file.name}, {name}: {'; '.join(times)}; {taken / 1e6:.1f}; {taken / size:.2f}")
 
 
 if __name__ == "__main__":

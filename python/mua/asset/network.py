@@ -40,7 +40,7 @@ def _is_part(name: str) -> Callable[[str], bool]:
 
 
 def _moves(path: str) -> bool:
-    return path.startswith(BRANCHES) and not path.endswith("ll_mean")
+    return path.startswith(("coarse.", *BRANCHES)) and not path.endswith(("ll_mean", "coarse.mean"))
 
 
 def _is_low(path: str) -> bool:
@@ -52,7 +52,7 @@ STAGES: tuple[Callable[[str], bool], ...] = (_is_late, _is_part("static_offset")
 
 
 def _stages(tree: Tree) -> Sequence[Sequence[Array]]:
-    """The data of a posed mesh, of mean splats, of what moves with details last, of the static offset, of all else."""
+    """The data of the mean mesh, of mean splats, of what moves with details last, of the static offset, of all else."""
     stages: list[list[Array]] = [[] for _ in range(len(STAGES) + 1)]
     found = sorted(tensors(tree), key=lambda place: _level(place[0]))
     for path, tensor in found:

@@ -5,7 +5,7 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 
-from mua.arrays import Array
+from mua.arrays import Array, unique_rows
 from mua.errors import InputError
 from mua.rig.body_parts import BODY_PARTS, BodyPart
 
@@ -87,7 +87,7 @@ def _pieces(nodes: Array, corners: Array, labels: Array) -> Array:
     from mua.rig.charts import find_charts  # here, because options are read without scipy
 
     rows = np.column_stack([np.repeat(labels, 3, axis=0), nodes.ravel()])
-    return find_charts(np.unique(rows, axis=0, return_inverse=True)[1].reshape(-1, 3), corners)
+    return find_charts(unique_rows(rows)[2].reshape(-1, 3), corners)
 
 
 def _largest(share: float, most: float) -> float:

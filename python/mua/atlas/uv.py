@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import xatlas
 
-from mua.arrays import Array
+from mua.arrays import Array, unique_rows
 from mua.atlas.allocation import wanted_fineness
 from mua.atlas.bake_texture import bake_texture
 from mua.atlas.chart_quality import distorted, even, overlapping, starved
@@ -198,7 +198,7 @@ def _side_by_side(
 def _character(source: _Source, layout: _Layout, size: int) -> Character:
     """The character in its new texture space, with the image that belongs to it."""
     surfaces = source.surfaces
-    uv, uv_faces = np.unique(layout.corners.reshape(-1, 2), axis=0, return_inverse=True)
+    uv, _, uv_faces = unique_rows(layout.corners.reshape(-1, 2))
     mesh = Mesh(
         vertices=surfaces.vertices, faces=surfaces.faces, uv=uv, uv_faces=uv_faces.reshape(-1, 3).astype(np.int32)
     )
@@ -230,7 +230,7 @@ def _numbered(
     rows: Array,  # [3 F, k], one for each corner
 ) -> Array:
     """Equal rows as equal numbers: [F, 3] int."""
-    return np.unique(rows, axis=0, return_inverse=True)[1].reshape(-1, 3)
+    return unique_rows(rows)[2].reshape(-1, 3)
 
 
 def _per_chart(fold: np.ufunc, values: Array, charts: Array) -> Array:

@@ -24,9 +24,10 @@ def seen_shares(
     """The shares of all views, and of those of the front, in which points are seen, as they are foreshortened: [n]."""
     shown, possible = np.zeros(len(places)), np.zeros(len(places))
     in_front, views = np.zeros(len(places)), 0
+    cell = max(float(np.ptp(places, axis=0).max()), np.finfo(float).tiny) / CELLS
     for away in _views():
         facing = np.abs(normals @ away)
-        seen = facing * _foremost(places, away, facing, solid=opacity >= SOLID)
+        seen = facing * _foremost(places, away, facing, solid=opacity >= SOLID, cell=cell)
         shown, possible = shown + seen, possible + facing
         if away[2] > FRONT:
             in_front, views = in_front + seen, views + 1
@@ -41,10 +42,9 @@ def _views() -> Iterator[Array]:
         yield np.array([flat * np.sin(azimuth), up, flat * np.cos(azimuth)])
 
 
-def _foremost(places: Array, away: Array, facing: Array, *, solid: Array) -> Array:
-    """Which points [n] have none of the solid ones in front of them."""
+def _foremost(places: Array, away: Array, facing: Array, *, solid: Array, cell: float) -> Array:
+    """Which points [n] have none of the solid ones in front of them; `cell` is in metres."""
     right = np.array([away[2], 0, -away[0]]) / np.hypot(away[0], away[2])
-    cell = max(float(np.ptp(places, axis=0).max()), np.finfo(float).tiny) / CELLS
     column, row = (np.floor(places @ axis / cell).astype(np.int64) for axis in (right, np.cross(away, right)))
     at = (row - row.min()) * (np.ptp(column) + 1) + column - column.min()
     depth, first = places @ away / cell, np.full(at.max() + 1, -np.inf)

@@ -34,6 +34,14 @@ class Camera:
         """Distance of the near plane, metres."""
         return float(self.projection[2, 3]) / -2
 
+    def pixels(
+        self,
+        points: Array,  # [N, 3] world, metres
+    ) -> tuple[Array, Array]:
+        """Columns and rows [N, 2] of points in the image, and their depths [N] before the eye, metres."""
+        clip = np.column_stack([points, np.ones(len(points))]) @ (self.projection @ self.view).T
+        return (clip[:, :2] / clip[:, 3:] * [1, -1] + 1) / 2 * self.screen, clip[:, 3]
+
 
 def perspective(
     fov: float,  # vertical, radians

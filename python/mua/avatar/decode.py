@@ -11,7 +11,7 @@ from mua.avatar.model import Branch, Mlp, Model, Wavelet
 from mua.channels import APPEARANCE
 from mua.kernels.blend_subbands import blend_detail, blend_ll
 from mua.kernels.dq_skinning import blend_texels, blend_vertices, skin_splats
-from mua.kernels.expressions import bend_texels, bend_triangles, bend_vertices, brighten_texels, stars_of
+from mua.kernels.expressions import bend_texels, bend_triangles, bend_vertices, brighten_texels, reach_of
 from mua.kernels.inverse_dwt import add_static, halve, inverse_dwt
 from mua.kernels.mlp_matmul import mlp_matmul
 from mua.pose.clip import Clip
@@ -162,18 +162,21 @@ def express(
     """Vertices and texture with the expressions, as rules hold these back; the very same where all weights are 0."""
     if rig.expressions is None or weights is None:
         return canonical, texture
-    weights = rig.expressions.shown(weights).astype(canonical.dtype)
+    expressions, texels = rig.expressions, rig.texels
+    weights = expressions.shown(weights).astype(canonical.dtype)
     if not weights.any():
         return canonical, texture
-    moved = rig.expressions.displacement(weights, vertices=len(canonical))
-    faces, texels = rig.mesh.faces, rig.texels
-    starts, stars = stars_of(faces, len(canonical))
-    bends = bend_vertices(bend_triangles(canonical, moved, faces), starts, stars)
-    barycentrics = texels.barycentrics.astype(canonical.dtype, copy=False)
-    corners = faces[texels.triangles]
-    gains = rig.expressions.brightening(weights, vertices=len(canonical))
-    texture = brighten_texels(gains, corners, barycentrics, bend_texels(bends, corners, barycentrics, texture))
-    return canonical + moved, texture
+    moved = expressions.displacement(weights, vertices=len(canonical))
+    gains = expressions.brightening(weights, vertices=len(canonical))
+    reach = reach_of(expressions.moved(weights), rig.mesh.faces, texels.triangles)
+    at, about = reach.texels[:, 0], reach.vertices
+    corners = reach.corners[reach.texels[:, 1]]
+    barycentrics = texels.barycentrics[at].astype(canonical.dtype, copy=False)
+    bends = bend_vertices(bend_triangles(canonical[about], moved[about], reach.corners), reach.starts, reach.stars)
+    expressed = texture.copy(order="K")
+    expressed[at] = bend_texels(bends, corners, barycentrics, texture[at])
+    expressed[at] = brighten_texels(gains[about], corners, barycentrics, expressed[at])
+    return canonical + moved, expressed
 
 
 def pose_splats(

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from mua.arrays import Array
+from mua.arrays import Array, unique_rows
 from mua.atlas.surfaces import Surfaces
 from mua.characters.alpha import NOTHING_SAID, Alphas, with_alphas
 from mua.characters.bind_pose import Bind, bind_pose
@@ -137,13 +137,19 @@ def _middles(mesh: _Mesh, joints: int) -> Array:
         return np.asarray(sums / mass[:, None])
 
 
+def _is_plain(image: Array) -> bool:
+    """Whether an image [H, W, 4] has one colour."""
+    first = image[:1, :1]
+    return bool((image[0] == first).all()) and bool((image == first).all())
+
+
 def _without_outlines(scene: Scene, bind: Bind, mesh: _Mesh) -> tuple[Scene, Bind, _Mesh]:
     """The scene without outlines: one-coloured shells around other parts, wound inside out, that splats would draw."""
     sizes = [len(part.faces) for part in scene.parts]
     plain = [
         p
         for p, part in enumerate(scene.parts)
-        if part.colors is None and np.ptp(scene.materials[part.material].image, axis=(0, 1)).max() == 0
+        if part.colors is None and _is_plain(scene.materials[part.material].image)
     ]
     found = outlines(mesh.vertices, mesh.faces, np.repeat(np.arange(len(sizes)), sizes), plain)
     if not found:
@@ -332,11 +338,11 @@ def _outward(mesh: _Mesh) -> _Mesh:
 
 def first_of_equal(rows: Array) -> tuple[Array, Array]:
     """Indices of the first of each run of equal rows, in order of appearance, and for each row which it equals."""
-    _, first, inverse = np.unique(rows, axis=0, return_index=True, return_inverse=True)
+    _, first, inverse = unique_rows(rows)
     order = np.argsort(first)
     rank = np.empty(len(order), int)
     rank[order] = np.arange(len(order))
-    return first[order], rank[inverse.reshape(-1)]
+    return first[order], rank[inverse]
 
 
 def _corners(faces: Array, uv: Array, *, uv_faces: Array, face_material: Array) -> tuple[Array, Array]:

@@ -7,7 +7,7 @@ import numpy as np
 from PIL import Image
 from scipy.ndimage import distance_transform_edt
 
-from mua.arrays import Array
+from mua.arrays import Array, unique_rows
 from mua.asset.avatar import Avatar
 from mua.avatar.decode import Splats
 from mua.export.splats import mean_colors
@@ -57,7 +57,7 @@ def skinned_mesh(
     """The template of an avatar, painted with the mean colours of its splats."""
     mesh, rig = avatar.rig.mesh, avatar.rig
     corners = np.stack([mesh.faces.ravel(), mesh.uv_faces.ravel()], axis=1)
-    pairs, index = np.unique(corners, axis=0, return_inverse=True)
+    pairs, _, index = unique_rows(corners)
     vertex, uv = pairs.T
     normals = vertex_normals(mesh.vertices.astype(float), mesh.faces)
     return SkinnedMesh(

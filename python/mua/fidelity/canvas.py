@@ -3,16 +3,58 @@
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from typing import Any
+from typing import Any, NamedTuple
 
 import moderngl
 import numpy as np
 
 from mua.arrays import Array
+from mua.avatar.camera import Camera
 from mua.errors import InputError
 
 OPENGL = 330  # the oldest version that has all that is needed
 LAID_OVER = (moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA)  # premultiplied colours, from back to front
+
+
+class Area(NamedTuple):
+    """A part of an image in pixels, rows from the top; nothing of it where the last is not beyond the first."""
+
+    left: int
+    top: int
+    right: int  # the first column beyond
+    bottom: int
+
+    @classmethod
+    def about(
+        cls,
+        low: Array,  # [N, 2] column and row, pixels
+        high: Array,  # [N, 2]
+        screen: tuple[int, int],
+    ) -> "Area":
+        """The pixels of a screen that any of N boxes may touch."""
+        if not len(low):
+            return cls(0, 0, 0, 0)
+        first = np.clip(np.floor(low.min(axis=0)) - 1, 0, screen).astype(int)
+        last = np.clip(np.ceil(high.max(axis=0)) + 1, 0, screen).astype(int)
+        return cls(*first.tolist(), *last.tolist())
+
+    @classmethod
+    def of_points(
+        cls,
+        points: Array,  # [N, 3] world, metres
+        camera: Camera,
+    ) -> "Area":
+        """The pixels that what lies between some points may touch; all where one is not before the camera."""
+        pixels, depths = camera.pixels(points)
+        return cls(0, 0, *camera.screen) if (depths <= camera.near).any() else cls.about(pixels, pixels, camera.screen)
+
+    @property
+    def empty(self) -> bool:
+        return self.right <= self.left or self.bottom <= self.top
+
+    def of(self, image: Array) -> Array:
+        """The view of an image [H, W, ...] on this part."""
+        return image[self.top : self.bottom, self.left : self.right]
 
 
 @contextmanager
@@ -43,19 +85,27 @@ class Canvas:
         self._color = context.renderbuffer(self.size, dtype=dtype)
         self._target = context.framebuffer([self._color], context.depth_renderbuffer(self.size))
 
-    def begin(self) -> None:
-        """Draw here from now on, onto nothing."""
+    def begin(self, area: Area | None = None) -> None:
+        """Draw here from now on, onto nothing; only in a part of the image where one is given."""
         self._target.use()
+        self._target.scissor = self._box(area)
         self._target.clear(0.0, 0.0, 0.0, 0.0, depth=1.0)
 
-    def read(self) -> Array:
-        """The image [H, W, 4] float32, each pixel the mean of its samples, its first row at the top."""
-        (width, height), count = self._screen, self._samples
+    def read(self, area: Area | None = None) -> Array:
+        """The image or a part of it [H, W, 4] float32, each pixel the mean of its samples, its first row at the top."""
+        count = self._samples
+        box = self._box(area)
         kind = np.uint8 if self._dtype == "f1" else np.float32
-        samples = np.frombuffer(self._target.read(components=4, dtype=self._dtype), kind)
-        samples = samples.reshape(height, count, width, count, 4)[::-1]
+        samples = np.frombuffer(self._target.read(box, components=4, dtype=self._dtype), kind)
+        samples = samples.reshape(box[3] // count, count, box[2] // count, count, 4)[::-1]
         total = sum(samples[:, row, :, column].astype(np.float32) for row in range(count) for column in range(count))
         return np.asarray(total / np.float32((255 if kind is np.uint8 else 1) * count**2))
+
+    def _box(self, area: Area | None) -> tuple[int, int, int, int]:
+        """Samples of an area, as OpenGL counts them: left, bottom, width, height."""
+        left, top, right, bottom = area or (0, 0, *self._screen)
+        corner_and_size = left, self._screen[1] - bottom, right - left, bottom - top
+        return tuple(self._samples * number for number in corner_and_size)  # type: ignore[return-value]
 
 
 def draw(

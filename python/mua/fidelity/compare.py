@@ -135,8 +135,7 @@ class _Studio:
 
     def _joint_at(self, points: Array, camera: Camera, place: tuple[int, int]) -> str:
         """The name of the node that carries what is seen at a place: the nearest to the eye of the points about it."""
-        clip = np.column_stack([points, np.ones(len(points))]) @ (camera.projection @ camera.view).T
-        screen = (clip[:, :2] / clip[:, 3:] * [1, -1] + 1) / 2 * SCREEN
-        away = np.linalg.norm(screen - (np.array(place) + 0.5), axis=1)
+        pixels, depths = camera.pixels(points)
+        away = np.linalg.norm(pixels - (np.array(place) + 0.5), axis=1)
         about = np.flatnonzero(away <= max(NEAR_BY, float(away.min())))
-        return self._scene.node_names[int(self._dominant_joints[about[np.argmin(clip[about, 3])]])]
+        return self._scene.node_names[int(self._dominant_joints[about[np.argmin(depths[about])]])]

@@ -1,17 +1,20 @@
 """Each expression of a character, drawn from its file and as an avatar shows it: a close look at the face."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import moderngl
 import numpy as np
 
 from mua.arrays import Array
-from mua.avatar.camera import orbit
-from mua.avatar.decode import Splats, express, pose_splats
+from mua.avatar.camera import Camera, orbit
+from mua.avatar.decode import express, pose_splats
+from mua.fidelity.canvas import Area
 from mua.fidelity.measure import Pair, agreement
 from mua.fidelity.painter import Painter
 from mua.fidelity.posing import Moment, skinned
 from mua.fidelity.splats import SplatPainter
+from mua.kernels.expressions import reach_of
 from mua.scene import Part, Scene, Source
 from mua.teachers.simulated.still import StillTeacher
 
@@ -52,35 +55,83 @@ def compare_faces(
     expressions, scene = teacher.rig.expressions, source.scene
     if expressions is None:
         return None
-    still = teacher.frame(rest.pose)
-    camera = orbit(_box(scene), screen=SCREEN, azimuth=rest.yaw + AWAY)
-    paint_source = Painter(context, scene.parts, scene.materials, screen=SCREEN)
-    paint_splats = SplatPainter(context, SCREEN)
-    shots = []
-    for name, weights in zip((None, *expressions.names), _each_alone(len(expressions)), strict=True):
-        places = [skinned(scene, _with_target(part, name), rest.nodes) for part in scene.parts]
-        mesh, texture = express(teacher.rig, still.mesh, texture=still.texture, weights=weights)
-        drawn = paint_source(places, camera), paint_splats(_posed(teacher, mesh, texture, rest), camera)
-        shots.append(ExpressionShot(*drawn, agreement(*drawn), name or AT_REST))
-    return FaceFidelity(shots[0], tuple(shots[1:]))
+    camera = camera_of(scene, rest)
+    of_source, of_splats = _Source(context, scene, rest, camera), _Splats(context, teacher, rest, camera)
+    drawn = [(of_source.at_rest, of_splats.at_rest)]
+    drawn += [(of_source.expressed(name), of_splats.expressed(number)) for number, name in enumerate(expressions.names)]
+    names = AT_REST, *expressions.names
+    rest_shot, *shots = (ExpressionShot(*pair, agreement(*pair), name) for pair, name in zip(drawn, names, strict=True))
+    return FaceFidelity(rest_shot, tuple(shots))
 
 
-def _posed(teacher: StillTeacher, mesh: Array, texture: Array, moment: Moment) -> Splats:
-    return pose_splats(teacher.rig, mesh, texture=texture, pose=moment.pose)
+class _Source:
+    """Draws the file's own meshes; for an expression only where it moves them."""
+
+    def __init__(self, context: moderngl.Context, scene: Scene, rest: Moment, camera: Camera) -> None:
+        self._scene, self._rest, self._camera = scene, rest, camera
+        self._paint = Painter(context, scene.parts, scene.materials, screen=SCREEN)
+        self._places = [skinned(scene, part, rest.nodes) for part in scene.parts]
+        self.at_rest = self._paint(self._places, camera)
+
+    def expressed(self, name: str) -> Array:
+        """The image [H, W, 4] in one expression."""
+        places, moved = list(self._places), [np.empty((0, 3))]
+        for index, part in enumerate(self._scene.parts):
+            if vertices := [target.vertices for target in part.targets if target.name == name]:
+                places[index] = skinned(self._scene, _with_target(part, name), self._rest.nodes)
+                corners = np.unique(part.faces[np.isin(part.faces, np.concatenate(vertices)).any(axis=1)])
+                moved += [at[index][corners] for at in (self._places, places)]
+        area = Area.of_points(np.concatenate(moved), self._camera)
+        return _patched(self.at_rest, area, lambda: self._paint(places, self._camera, area))
 
 
-def _each_alone(count: int) -> Array:
-    """Weights [count + 1, count]: all 0, then each at 1 with the others at 0."""
-    return np.eye(count + 1, count, k=-1, dtype=np.float32)
+class _Splats:
+    """Draws the splats of the pose at rest, bent as an avatar bends them; only those that an expression moves anew."""
+
+    def __init__(self, context: moderngl.Context, teacher: StillTeacher, rest: Moment, camera: Camera) -> None:
+        self._rig, self._pose, self._camera = teacher.rig, rest.pose, camera
+        self._still = teacher.frame(rest.pose)
+        self._paint = SplatPainter(context, SCREEN)
+        self._posed = pose_splats(self._rig, self._still.mesh, texture=self._still.texture, pose=rest.pose)
+        self._quads = self._paint.quads(self._posed, camera)
+        self.at_rest = self._paint.drawn(self._quads)
+
+    def expressed(self, number: int) -> Array:
+        """The image [H, W, 4] in one expression."""
+        expressions, texels = self._rig.expressions, self._rig.texels
+        assert expressions is not None
+        weights = np.zeros(len(expressions), np.float32)
+        weights[number] = 1
+        some = reach_of(expressions.moved(weights), self._rig.mesh.faces, texels.triangles).texels[:, 0]
+        rig = replace(self._rig, texels=texels.some(some))
+        mesh, texture = express(rig, self._still.mesh, texture=self._still.texture[some], weights=weights)
+        posed = replace(pose_splats(rig, mesh, texture=texture, pose=self._pose), bounds=self._posed.bounds)
+        moved = self._paint.quads(posed, self._camera)
+        area = self._paint.area(self._quads.among(some), moved)
+        return _patched(self.at_rest, area, lambda: self._paint.drawn(self._quads.exchanged(some, moved), area))
 
 
-def _with_target(part: Part, name: str | None) -> Part:
-    """The part with one of its targets at weight 1; None: with none."""
+def _patched(image: Array, area: Area, drawn: Callable[[], Array]) -> Array:
+    """The image with a part of it drawn anew."""
+    if area.empty:
+        return image
+    patched = image.copy()
+    area.of(patched)[:] = drawn()
+    return patched
+
+
+def _with_target(part: Part, name: str) -> Part:
+    """The part with one of its targets at weight 1."""
     positions = part.positions.copy()
     for target in part.targets:
         if target.name == name:
             positions[target.vertices] += target.offsets
     return replace(part, positions=positions)
+
+
+def camera_of(scene: Scene, rest: Moment) -> Camera:
+    """The camera that looks at what expressions move."""
+    return orbit(_box(scene), screen=SCREEN, azimuth=rest.yaw + AWAY)
 
 
 def _box(scene: Scene) -> Array:

@@ -11,7 +11,7 @@ from mua.arrays import Array
 from mua.atlas.filtering import bled
 from mua.atlas.opacity import EDGE, cut_out
 from mua.avatar.camera import Camera
-from mua.fidelity.canvas import LAID_OVER, Canvas, draw, set_uniform
+from mua.fidelity.canvas import LAID_OVER, Area, Canvas, draw, set_uniform
 from mua.scene import Material, Part
 
 SAMPLES = 3  # samples along a side of a pixel; odd, so that no coverage is exactly one half
@@ -88,15 +88,16 @@ class Painter:
         self,
         places: Sequence[Array],  # for each part its vertices [N, 3], world, metres
         camera: Camera,
+        area: Area | None = None,
     ) -> Array:
-        """Premultiplied sRGB and alpha [H, W, 4] float32."""
-        self._canvas.begin()
+        """Premultiplied sRGB and alpha [H, W, 4] float32, of a part of the image where one is given."""
+        self._canvas.begin(area)
         set_uniform(self._program, "matrix", tuple((camera.projection @ camera.view).T.ravel()))  # column by column
         self._context.enable_only(moderngl.DEPTH_TEST)
         for piece, at in zip(self._pieces, places, strict=True):
             self._draw(piece, at[piece.corners], np.arange(len(piece.corners)), solid=True)
         self._draw_clear(places, camera)
-        return self._canvas.read()
+        return self._canvas.read(area)
 
     def _draw_clear(self, places: Sequence[Array], camera: Camera) -> None:
         """Draw transparent triangles over the rest, sorted from back to front."""

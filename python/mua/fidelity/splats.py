@@ -1,6 +1,6 @@
 """Draws splats by OpenGL: the formula of kernels/splat_draw, many times as fast as its reference on the CPU."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import moderngl
 import numpy as np
@@ -8,10 +8,10 @@ import numpy as np
 from mua.arrays import Array
 from mua.avatar.camera import Camera
 from mua.avatar.decode import Splats
-from mua.avatar.rendering import projected
-from mua.fidelity.canvas import LAID_OVER, Canvas, draw, set_uniform
-from mua.kernels.splat_draw import WEIGHT
-from mua.kernels.splat_project import REACH, wide_deviations
+from mua.avatar.rendering import visible
+from mua.fidelity.canvas import LAID_OVER, Area, Canvas, draw, set_uniform
+from mua.kernels.splat_draw import WEIGHT, splat_colors
+from mua.kernels.splat_project import REACH, half_extents, wide_deviations
 
 SAMPLES = 2  # samples along a side of a pixel; thin splats in one pixel then cover different parts of it
 
@@ -48,25 +48,65 @@ for name, number in {"REACH": float(REACH), "WEIGHT": WEIGHT}.items():
     VERTEX = VERTEX.replace(name, str(number))
 
 
+@dataclass(frozen=True, eq=False)
+class Quads:
+    """What a camera sees of N splats, M of them, ready to be drawn."""
+
+    splats: Array  # [M] int, ascending
+    keys: Array  # [M] uint16, ascending from back to front
+    rows: Array  # [M, 12] the inputs of VERTEX, pixels of the canvas
+
+    def exchanged(
+        self,
+        some: Array,  # [n] int, splats that have moved
+        by: "Quads",  # what is seen of these, as splats 0 to n - 1
+    ) -> "Quads":
+        """The same with some splats elsewhere."""
+        stay = ~np.isin(self.splats, some)
+        splats = np.concatenate([self.splats[stay], some[by.splats]])
+        order = np.argsort(splats, kind="stable")
+        keys, rows = np.concatenate([self.keys[stay], by.keys]), np.concatenate([self.rows[stay], by.rows])
+        return Quads(splats[order], keys[order], rows[order])
+
+    def among(self, some: Array) -> "Quads":
+        """What is seen of some of the splats."""
+        held = np.isin(self.splats, some)
+        return Quads(self.splats[held], self.keys[held], self.rows[held])
+
+
 class SplatPainter:
     """Draws posed splats onto one size of image."""
 
     def __init__(self, context: moderngl.Context, screen: tuple[int, int]) -> None:
-        self._context = context
+        self._context, self._screen = context, screen
         self._program = context.program(vertex_shader=VERTEX, fragment_shader=FRAGMENT)
         self._canvas = Canvas(context, screen, samples=SAMPLES, dtype="f4")
         set_uniform(self._program, "screen", self._canvas.size)
 
     def __call__(self, frame: Splats, camera: Camera) -> Array:
         """Premultiplied sRGB and alpha [H, W, 4] float32, as `render.render_premultiplied` has every sample."""
-        splats = projected(frame, replace(camera, screen=self._canvas.size))
-        visible = splats.order[splats.ellipses[splats.order, 4] > 0]
-        ellipses, opacities = splats.ellipses[visible], splats.opacities[visible]
+        return self.drawn(self.quads(frame, camera))
+
+    def quads(self, frame: Splats, camera: Camera) -> Quads:
+        """The splats that a camera sees."""
+        splats, keys, (ellipses,) = visible(frame, replace(camera, screen=self._canvas.size))
         wide = wide_deviations(ellipses[:, 4:6])
-        rows = np.concatenate([ellipses, wide, splats.colors[visible], opacities[:, None]], axis=1)
-        self._canvas.begin()
+        sh, opacities = frame.sh[splats], frame.opacities[splats, None]
+        colors = splat_colors(frame.centres[splats], frame.texel_dq[splats], sh, camera.position)
+        return Quads(splats, keys, np.concatenate([ellipses, wide, colors, opacities], axis=1))
+
+    def drawn(self, quads: Quads, area: Area | None = None) -> Array:
+        """The image [H, W, 4] of some quads, or a part of it."""
+        rows = quads.rows[np.argsort(quads.keys, kind="stable")]
+        self._canvas.begin(area)
         self._context.enable_only(moderngl.BLEND)
         self._context.blend_func = LAID_OVER
         names = ("ellipse", "lengths", "shade")
         draw(self._program, rows, "4f 4f 4f/i", names, mode=moderngl.TRIANGLE_STRIP, vertices=4, instances=len(rows))
-        return self._canvas.read()
+        return self._canvas.read(area)
+
+    def area(self, *quads: Quads) -> Area:
+        """The part of the image that quads cover."""
+        rows = np.concatenate([some.rows for some in quads])
+        middle, half = rows[:, :2] / SAMPLES, half_extents(rows[:, :6]) / SAMPLES
+        return Area.about(middle - half, middle + half, self._screen)

@@ -4,7 +4,7 @@ import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
-from mua.arrays import Array
+from mua.arrays import Array, unique_rows
 from mua.rig.character import Mesh
 
 SPECK = 4 / 512**2  # UV area, 4 texels of a map of 512, below which a fold is no chart
@@ -13,7 +13,7 @@ SPECK = 4 / 512**2  # UV area, 4 texels of a map of 512, below which a fold is n
 def charts_of(mesh: Mesh) -> Array:
     """The UV chart [F] of each face."""
     pairs = np.stack([mesh.faces, mesh.uv_faces], axis=-1).reshape(-1, 2)
-    nodes = np.unique(pairs, axis=0, return_inverse=True)[1].reshape(-1, 3)
+    nodes = unique_rows(pairs)[2].reshape(-1, 3)
     return find_charts(nodes, mesh.uv[mesh.uv_faces])
 
 

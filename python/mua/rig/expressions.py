@@ -46,8 +46,16 @@ class Expressions:
     ) -> Array:
         """How far [V, 3] the weights move the vertices of the mesh, metres."""
         moved = np.zeros((vertices, 3), dtype=np.result_type(weights, np.float32))
-        np.add.at(moved, self.vertices, np.repeat(weights, np.diff(self.starts))[:, None] * self.offsets)
+        some, weight = self._weighted(weights)
+        np.add.at(moved, self.vertices[some], weight[:, None] * self.offsets[some])
         return moved
+
+    def moved(
+        self,
+        weights: Array,  # [E]
+    ) -> Array:
+        """The vertices that the weights move or brighten, some of them more than once."""
+        return self.vertices[self._weighted(weights)[0]]
 
     def brightening(
         self,
@@ -58,8 +66,15 @@ class Expressions:
         """How much brighter [V] the weights make the colours about the vertices, as a share of them."""
         gain = np.zeros(vertices, dtype=np.result_type(weights, np.float32))
         if self.gains is not None:
-            np.add.at(gain, self.vertices, np.repeat(weights, np.diff(self.starts)) * self.gains)
+            some, weight = self._weighted(weights)
+            np.add.at(gain, self.vertices[some], weight * self.gains[some])
         return gain
+
+    def _weighted(self, weights: Array) -> tuple[Array, Array]:
+        """The entries of expressions whose weight is not 0, and their weights."""
+        weight = np.repeat(weights, np.diff(self.starts))
+        some = np.flatnonzero(weight)
+        return some, weight[some]
 
     def at(
         self,

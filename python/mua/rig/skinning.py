@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mua import rotation
-from mua.arrays import Array
+from mua.arrays import Array, unique_rows
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_matrix
@@ -29,7 +29,7 @@ class Skinning:
         self._starts = np.concatenate([[0], np.cumsum(counts)])
         self._joints, self._weights = indices[used].astype(np.int64), weights[used].astype(np.float64)
         pairs = np.stack([np.repeat(indices[:, 0], counts).astype(np.int64), self._joints], axis=1)
-        self._pairs, self._pair = np.unique(pairs, axis=0, return_inverse=True)
+        self._pairs, _, self._pair = unique_rows(pairs)
 
     def __call__(
         self,
@@ -38,7 +38,7 @@ class Skinning:
         """Dual quaternions [V, 8] of the vertices, bind pose to world."""
         first, other = joints[self._pairs, :4].swapaxes(0, 1)
         away = np.einsum("pi,pi->p", other, first) < 0
-        weights = np.where(away[self._pair.ravel()], -self._weights, self._weights) if away.any() else self._weights
+        weights = np.where(away[self._pair], -self._weights, self._weights) if away.any() else self._weights
         matrix = self._matrix(weights, len(joints))
         total = np.stack([matrix @ component for component in np.ascontiguousarray(joints.T)])
         total /= np.maximum(np.sqrt(np.einsum("in,in->n", total[:4], total[:4])), np.finfo(total.dtype).tiny)

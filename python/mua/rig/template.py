@@ -7,7 +7,7 @@ from itertools import pairwise
 import meshoptimizer
 import numpy as np
 
-from mua.arrays import Array
+from mua.arrays import Array, unique_rows
 from mua.rig.character import Character, Mesh
 from mua.rig.charts import areas
 
@@ -98,7 +98,7 @@ def _decimate(
 ) -> Mesh:
     """The mesh with fewer triangles between about `vertices` of the same vertices."""
     corners = np.stack([mesh.faces.ravel(), mesh.uv_faces.ravel()], axis=1)
-    pairs, index = np.unique(corners, axis=0, return_inverse=True)  # a vertex once for each of its UVs
+    pairs, _, index = unique_rows(corners)  # a vertex once for each of its UVs
     positions = mesh.vertices[pairs[:, 0]].astype(np.float32)
     metres_per_uv = np.sqrt(areas(mesh.vertices[mesh.faces]).sum() / max(areas(mesh.uv[mesh.uv_faces]).sum(), 1e-12))
     extent = meshoptimizer.simplify_scale(positions)
@@ -107,7 +107,7 @@ def _decimate(
     attributes = np.column_stack([uv, skin, face]).astype(np.float32)
     triangles = len(mesh.faces) * vertices / len(mesh.vertices)
     for _ in range(ATTEMPTS):
-        left = pairs[_collapse(index.ravel(), positions, attributes, triangles=int(triangles))]
+        left = pairs[_collapse(index, positions, attributes, triangles=int(triangles))]
         count = len(np.unique(left[:, 0]))
         if abs(count - vertices) <= CLOSE_ENOUGH * vertices:
             break

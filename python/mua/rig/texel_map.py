@@ -39,6 +39,20 @@ class TexelMap:
         four, kinds = self.blocks()[1], self.levels[0][:, None] >> 2 * np.arange(4) & 3
         return four[kinds == CHIEF], np.where(kinds >= MEMBER, four, -1), np.where(kinds >= TURNED, four, -1)
 
+    def some(
+        self,
+        rows: Array,  # [n] int, ascending
+    ) -> "TexelMap":
+        """Some of the texels, without coarser levels."""
+        return replace(
+            self,
+            texels=self.texels[rows],
+            triangles=self.triangles[rows],
+            barycentrics=self.barycentrics[rows],
+            one_sided=None if self.one_sided is None else self.one_sided[rows],
+            levels=None,
+        )
+
     def halved(self) -> "TexelMap":
         """The next level: blocks as texels, each where its chief lies, one-sided where all members are."""
         assert self.levels

@@ -7,7 +7,7 @@ from scipy import sparse
 from scipy.sparse import csgraph
 
 from mua import rotation
-from mua.arrays import Array
+from mua.arrays import Array, unique_rows
 from mua.rig.character import Mesh
 from mua.rig.surface_points import interpolate
 from mua.texture.ends import end_at_surface
@@ -235,7 +235,7 @@ def _tangent_operator(vertices: Array, faces: Array) -> tuple[sparse.csr_matrix,
     """
     count = len(vertices)
     edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
-    i, j = np.unique(np.concatenate([edges, edges[:, ::-1]]), axis=0).T
+    i, j = unique_rows(np.concatenate([edges, edges[:, ::-1]]))[0].T
     normals = vertex_normals(vertices, faces)
     basis = _frames(np.zeros_like(normals), normals)[:, :, :2]
     edge = vertices[j] - vertices[i]

@@ -1,5 +1,6 @@
 using System;
 using System.Runtime.InteropServices;
+using System.Threading;
 
 namespace Mua.Format
 {
@@ -64,15 +65,16 @@ namespace Mua.Format
         private ushort[] Known(float scale)
         {
             int halvings = 127 - (int)(new Bits { Value = scale }.Word >> 23);
-            ushort[] known = halves[halvings];
+            ushort[] known = Volatile.Read(ref halves[halvings]);
             if (known == null)
             {
-                halves[halvings] = known = new ushort[Numbers];
+                known = new ushort[Numbers];
                 for (int i = 0; i < Numbers; i++)
                 {
                     bool isNegative = i % 2 != 0;
                     known[i] = (ushort)(HalfOf((isNegative ? i / 2 + 1 : i / 2) * scale) | (isNegative ? 0x8000u : 0u));
                 }
+                Volatile.Write(ref halves[halvings], known); // other threads may make the same
             }
             return known;
         }

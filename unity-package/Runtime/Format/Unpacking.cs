@@ -1,21 +1,39 @@
 using System;
+using System.Collections.Generic;
 using System.IO;
 using System.IO.Compression;
+using System.Runtime.ExceptionServices;
 using System.Runtime.InteropServices;
+using System.Threading;
+using System.Threading.Tasks;
 
 namespace Mua.Format
 {
     /// <summary>
     /// Unpacks the packed tensors of a parsed tree in place, as python/mua/asset/packing.py does: what a tensor gives is
-    /// known from its shape, and refused before anything is allocated for it.
+    /// known from its shape, and refused before anything is allocated for it. Each is a stream of its own, so that several
+    /// threads unpack a large file; the fault of a bad one is that of its first tensor in the schema's order.
     /// </summary>
     internal sealed class Unpacking
     {
+        private const int MostThreads = 4; // each keeps planes of the largest tensor that it has met
+        private const long Alone = 1 << 20; // bytes that one thread unpacks before another has begun
+
         private readonly byte[] content;
         private readonly Tensors tensors;
         private readonly Steps steps = new Steps();
-        private byte[] planes = new byte[0];
+        private readonly List<Packed> found = new List<Packed>();
         private long claimed;
+        private int taken; // of the tensors, largest first
+        private int faulty = int.MaxValue; // the first tensor found to be bad
+        private ExceptionDispatchInfo fault;
+
+        private struct Packed
+        {
+            public Table Tensor;
+            public string Path;
+            public int Place; // in the schema's order
+        }
 
         /// <summary>Bytes that all packed tensors may give.</summary>
         private long Most => (long)Limits.UnpackedTimes * content.Length + Limits.UnpackedRoom;
@@ -30,7 +48,7 @@ namespace Mua.Format
         {
             var unpacking = new Unpacking(content);
             Walk(tree, "", unpacking.Claim);
-            Walk(tree, "", unpacking.Unpack);
+            unpacking.UnpackAll();
         }
 
         public static bool IsPacked(Table tree)
@@ -78,6 +96,56 @@ namespace Mua.Format
                     path + ".data", "the file's packed tensors claim more than {0} bytes, too many for {1} bytes",
                     Most, content.Length);
             }
+            found.Add(new Packed { Tensor = tensor, Path = path, Place = found.Count });
+        }
+
+        private void UnpackAll()
+        {
+            int threads = claimed < Alone ? 1 : Math.Min(Math.Min(Environment.ProcessorCount, MostThreads), found.Count);
+            found.Sort((one, other) => other.Tensor.Block("data").Count.CompareTo(one.Tensor.Block("data").Count));
+            if (threads > 1)
+            {
+                Parallel.For(0, threads, thread => UnpackOthers());
+            }
+            else
+            {
+                UnpackOthers();
+            }
+            fault?.Throw();
+        }
+
+        /// <summary>Unpacks what no other thread has taken; after a fault only tensors before that one.</summary>
+        private void UnpackOthers()
+        {
+            byte[] planes = new byte[0];
+            for (int i = Interlocked.Increment(ref taken) - 1; i < found.Count; i = Interlocked.Increment(ref taken) - 1)
+            {
+                Packed packed = found[i];
+                if (packed.Place > Volatile.Read(ref faulty))
+                {
+                    continue;
+                }
+                try
+                {
+                    Unpack(packed.Tensor, packed.Path, ref planes);
+                }
+                catch (Exception error)
+                {
+                    Keep(packed.Place, error);
+                }
+            }
+        }
+
+        private void Keep(int place, Exception error)
+        {
+            lock (found)
+            {
+                if (place < faulty)
+                {
+                    faulty = place;
+                    fault = ExceptionDispatchInfo.Capture(error);
+                }
+            }
         }
 
         /// <summary>Bytes of the elements, by the shape.</summary>
@@ -91,13 +159,13 @@ namespace Mua.Format
             return count;
         }
 
-        private void Unpack(Table tensor, string path)
+        private void Unpack(Table tensor, string path, ref byte[] planes)
         {
             bool inSteps = (Packing)tensor.Number("packing") == Packing.Steps;
             ReadOnlySpan<float> scales = inSteps ? Scales(tensor, path) : default(ReadOnlySpan<float>);
             int width = Tensors.Width((ElementType)tensor.Number("type"));
             var data = new byte[Claimed(tensor, path)];
-            byte[] inflated = width == 1 ? data : Planes(data.Length);
+            byte[] inflated = width == 1 ? data : Planes(ref planes, data.Length);
             Inflate(tensor.Block("data"), inflated, data.Length, path);
             if (inSteps)
             {
@@ -137,8 +205,8 @@ namespace Mua.Format
             return scales;
         }
 
-        /// <summary>Room for planes, which one tensor after the other uses.</summary>
-        private byte[] Planes(int count)
+        /// <summary>Room for planes, which the tensors of a thread use one after the other.</summary>
+        private static byte[] Planes(ref byte[] planes, int count)
         {
             if (planes.Length < count)
             {

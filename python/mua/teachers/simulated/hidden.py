@@ -85,7 +85,7 @@ def showing_instead(
         points = np.einsum("nk,nkc->nc", barycentrics[hidden[asked]], places[corners[hidden[asked]]])
         away = rng.standard_normal((DIRECTIONS, 3))
         away /= np.linalg.norm(away, axis=1, keepdims=True)
-        asked[asked] = covers.seen(points, places, away=away, lift=lift)
+        asked[asked] = covers.seen(points, places, away=away, lift=lift, face=reached is not None)
         hidden = hidden[~asked]
     shown, own = np.arange(len(corners)), np.ones(len(corners), bool)
     own[hidden] = False
@@ -138,12 +138,16 @@ class _Covers:
         self._faces = [mesh.faces[~cut], mesh.faces[cut]]
         self._uv = wp.array(mesh.uv[mesh.uv_faces[cut]].reshape(-1, 2), dtype=wp.vec2, device=DEVICE)
         self._shown = wp.array(character.base_color[..., 3] >= SOLID * 255, dtype=bool, device=DEVICE)
+        self._face_meshes: list[wp.Mesh] = []
 
-    def seen(self, points: Array, vertices: Array, *, away: Array, lift: float) -> Array:
-        """Which points [n] are not covered from all sides while the surface is at `vertices` [V, 3]."""
+    def seen(self, points: Array, vertices: Array, *, away: Array, lift: float, face: bool) -> Array:
+        """Which points [n] are not covered from all sides while the surface is at `vertices` [V, 3].
+
+        With `face`, these are the bind pose but for an expression.
+        """
         if not len(points):
             return np.empty(0, bool)
-        meshes = [_mesh(vertices, faces) for faces in self._faces]
+        meshes = self._with_face(vertices) if face else [_mesh(vertices, faces) for faces in self._faces]
         surface = [*(mesh.id for mesh in meshes), self._uv, self._shown]
         directions = wp.array(away, dtype=wp.vec3, device=DEVICE)
 
@@ -156,6 +160,15 @@ class _Covers:
         wp.load_module(__name__, device=DEVICE)  # two threads must not do that at once
         threads = min(os.cpu_count() or 1, len(points))
         return np.concatenate(list(in_order(looked, np.array_split(points, threads), threads=threads)))
+
+    def _with_face(self, vertices: Array) -> list[wp.Mesh]:
+        """Meshes of the bind pose with an expression; what differs so little needs no new tree of boxes."""
+        if not self._face_meshes:
+            self._face_meshes = [_mesh(vertices, faces) for faces in self._faces]
+        for mesh in self._face_meshes:
+            mesh.points.assign(vertices)
+            mesh.refit()
+        return self._face_meshes
 
 
 def _mesh(vertices: Array, faces: Array) -> wp.Mesh:

@@ -15,7 +15,7 @@ The evening-out keeps what is shorter than about 4 cm small: a student has no dy
 import numpy as np
 import warp as wp
 
-from mua.arrays import Array
+from mua.arrays import Array, unique_rows
 from mua.rig.bones import Bones, capsule_distance, figure_scale
 from mua.teachers.simulated.rings import LANES, in_blocks, relax
 from mua.training.warp_start import start
@@ -258,7 +258,7 @@ def gravity_beyond_rest(
 def one_rings(faces: Array, count: int) -> tuple[Array, Array]:
     """Starts [V + 1] and neighbours [E]: vertex i touches neighbours[starts[i]:starts[i + 1]], ascending."""
     edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
-    own, other = np.unique(np.concatenate([edges, edges[:, ::-1]]), axis=0).T
+    own, other = unique_rows(np.concatenate([edges, edges[:, ::-1]]))[0].T
     return np.searchsorted(own, np.arange(count + 1)), other
 
 

@@ -36,8 +36,8 @@ export async function read(/** @type {ArrayBuffer} */ content) {
 }
 
 /**
- * What the first `end` bytes of a file show, a stage of it: mesh and motion, then splats, of which what is not there yet is
- * zeros. All is checked but the checksum, which only the whole file has.
+ * What the first `end` bytes of a file show, a stage of it: the mean mesh in motion, then splats, of which what is not there yet
+ * is zeros. All is checked but the checksum, which only the whole file has.
  * @param {ArrayBuffer} content @param {number} end
  */
 export async function readStage(content, end) {

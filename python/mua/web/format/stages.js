@@ -44,7 +44,7 @@ function endsOf(/** @type {ArrayBuffer} */ content, /** @type {number} */ got) {
 
 /**
  * Leave out of a tree what its first `end` bytes do not hold and nothing needs: clips, the surface, and all texels where any
- * of them are missing; expressions then move nothing. A file has the mesh and its first clip in its first stage.
+ * of them are missing; expressions then move nothing. A file has the mean mesh and its first clip in its first stage.
  * @param {Tree} tree @param {number} end
  */
 export function leaveOut(tree, end) {

@@ -1,0 +1,107 @@
+"""The close look at a face: each expression of the file beside the splats' own, drawn only where it moves them."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import gltf_files
+import numpy as np
+import pytest
+
+from mua.avatar.decode import express, pose_splats
+from mua.baking.check import fidelity_of
+from mua.characters.read import read_character
+from mua.fidelity import faces, report
+from mua.fidelity.canvas import Area, opened
+from mua.fidelity.face_sheet import face_sheet
+from mua.fidelity.posing import Poser
+from mua.fidelity.splats import SplatPainter
+from mua.rig.character import Character
+from mua.teachers.simulated.still import StillTeacher
+
+TEXELS = 192
+patched = faces._patched
+ROUNDED = 64 * 2**-24  # colours of some splats over each other, of channels that lie in memory in another order
+
+
+def grinning(tmp_path: Path) -> Character:
+    """A column with two expressions: one leans its upper end over, one lifts it a little."""
+    glb = gltf_files.body()
+    targets = []
+    for offset in ([0.15, 0, 0], [0, 0.05, 0]):
+        moved = np.zeros((16, 3))
+        moved[12:] = offset
+        targets.append({"POSITION": glb.accessor(moved)})
+    gltf_files.primitive(glb)["targets"] = targets
+    glb.json["meshes"][0]["extras"] = {"targetNames": ["lean", "lift"]}
+    return read_character(glb.save(tmp_path / "grin.glb"), atlas_size=256)
+
+
+def test_expressions_look_like_the_files_own_targets(tmp_path: Path) -> None:
+    character = grinning(tmp_path)
+    fidelity, warnings = fidelity_of(character, (), texels=TEXELS, faces=True)
+    assert fidelity is not None
+    assert fidelity.face is not None
+    assert [shot.name for shot in fidelity.face.expressions] == ["lean", "lift"]
+    for shot in fidelity.face.expressions:
+        assert shot.agreement.iou > fidelity.face.rest.agreement.iou - 0.02
+        assert not np.array_equal(shot.source, fidelity.face.rest.source)
+    assert not any("The face" in sentence for sentence in warnings)
+    assert [*report.as_dict(fidelity)["expressions"]] == ["at rest", "lean", "lift"]
+    assert face_sheet(fidelity.face).width == 2 * 3 * faces.SCREEN[0]
+    plain, _ = fidelity_of(character, (), texels=TEXELS)
+    assert plain is not None
+    assert plain.face is None
+
+
+def test_a_wrong_expression_is_measured_and_named(tmp_path: Path) -> None:
+    character = grinning(tmp_path)
+    assert character.expressions is not None
+    wrong = replace(character.expressions, offsets=character.expressions.offsets * np.array([-1, 1, 1], np.float32))
+    fidelity, warnings = fidelity_of(replace(character, expressions=wrong), (), texels=TEXELS, faces=True)
+    assert fidelity is not None
+    assert fidelity.face is not None
+    lean, lift = fidelity.face.expressions
+    assert lean.agreement.iou < lift.agreement.iou - 0.1
+    assert any("The face" in sentence and "lean" in sentence and "lift" not in sentence for sentence in warnings)
+
+
+def test_an_expression_drawn_where_it_moves_is_the_picture_drawn_whole(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    character = grinning(tmp_path)
+    assert character.source is not None
+    teacher = StillTeacher(character, texels=TEXELS)
+    rest = Poser(character.source, character.skeleton).rest()
+    areas: list[Area] = []
+    monkeypatch.setattr(faces, "_patched", lambda image, area, drawn: areas.append(area) or patched(image, area, drawn))
+    with opened() as context:
+        parts = faces.compare_faces(context, teacher, source=character.source, rest=rest)
+        assert all(not area.empty and area != whole_screen() for area in areas)
+        monkeypatch.setattr(Area, "about", classmethod(lambda *_: whole_screen()))
+        whole = faces.compare_faces(context, teacher, source=character.source, rest=rest)
+    assert parts is not None
+    assert whole is not None
+    for part, all_of_it in zip(parts.expressions, whole.expressions, strict=True):
+        np.testing.assert_array_equal(part.source, all_of_it.source)
+        np.testing.assert_array_equal(part.splats, all_of_it.splats)
+
+
+def test_splats_that_an_expression_moves_lie_among_the_others_as_if_all_were_drawn_anew(tmp_path: Path) -> None:
+    character = grinning(tmp_path)
+    assert character.source is not None
+    teacher = StillTeacher(character, texels=TEXELS)
+    rest = Poser(character.source, character.skeleton).rest()
+    still, camera = teacher.frame(rest.pose), faces.camera_of(character.source.scene, rest)
+    with opened() as context:
+        face = faces.compare_faces(context, teacher, source=character.source, rest=rest)
+        assert face is not None
+        for shot, weights in zip(face.expressions, np.eye(2, dtype=np.float32), strict=True):
+            mesh, texture = express(teacher.rig, still.mesh, texture=still.texture, weights=weights)
+            posed = pose_splats(teacher.rig, mesh, texture=texture, pose=rest.pose)
+            expected = SplatPainter(context, faces.SCREEN)(posed, camera)
+            assert np.quantile(np.abs(shot.splats - expected), 0.99) < ROUNDED
+            assert not np.allclose(shot.splats, face.rest.splats, atol=0.1)
+
+
+def whole_screen() -> Area:
+    return Area(0, 0, *faces.SCREEN)
