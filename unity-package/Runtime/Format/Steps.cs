@@ -9,12 +9,13 @@ namespace Mua.Format
     /// </summary>
     internal sealed class Steps
     {
+        private const int Bytes = 1 << 8; // numbers of one byte
         private const int Numbers = 1 << 16;
         private const uint LeastNormal = 113 << 23; // bits of 2^-14
         private const uint BiasDifference = (127 - 15) << 10;
         private const int DroppedBits = 23 - 10;
 
-        private readonly ushort[][] halves = new ushort[25][]; // of every number, by how often 1 is halved
+        private readonly ushort[][] halves = new ushort[25][]; // of the first numbers, or of all, by how often 1 is halved
 
         [StructLayout(LayoutKind.Explicit)]
         private struct Bits
@@ -39,8 +40,39 @@ namespace Mua.Format
             int row = found.Length / scales.Length;
             for (int i = 0; i < scales.Length; i++)
             {
-                Expand(low.Slice(i * row, row), high.Slice(i * row, row), Known(scales[i]), found.Slice(i * row, row));
+                Expand(low.Slice(i * row, row), high.Slice(i * row, row), scales[i], found.Slice(i * row, row));
             }
+        }
+
+        /// <summary>One row; what is known of a scale is made where the row has as many numbers as that.</summary>
+        private void Expand(ReadOnlySpan<byte> low, ReadOnlySpan<byte> high, float scale, Span<ushort> found)
+        {
+            int numbers = IsZero(high) ? Bytes : Numbers, halvings = 127 - (int)(new Bits { Value = scale }.Word >> 23);
+            if ((halves[halvings]?.Length ?? 0) < numbers && (numbers == Bytes || found.Length >= numbers))
+            {
+                halves[halvings] = Known(scale, numbers);
+            }
+            if ((halves[halvings]?.Length ?? 0) >= numbers)
+            {
+                Expand(low, high, halves[halvings], found);
+                return;
+            }
+            for (int at = 0; at < found.Length; at++)
+            {
+                found[at] = Half(low[at] | high[at] << 8, scale);
+            }
+        }
+
+        private static bool IsZero(ReadOnlySpan<byte> bytes)
+        {
+            foreach (byte one in bytes)
+            {
+                if (one != 0)
+                {
+                    return false;
+                }
+            }
+            return true;
         }
 
         /// <summary>One row, four numbers at a step.</summary>
@@ -61,20 +93,20 @@ namespace Mua.Format
             }
         }
 
-        private ushort[] Known(float scale)
+        private static ushort[] Known(float scale, int numbers)
         {
-            int halvings = 127 - (int)(new Bits { Value = scale }.Word >> 23);
-            ushort[] known = halves[halvings];
-            if (known == null)
+            var known = new ushort[numbers];
+            for (int number = 0; number < numbers; number++)
             {
-                halves[halvings] = known = new ushort[Numbers];
-                for (int i = 0; i < Numbers; i++)
-                {
-                    bool isNegative = i % 2 != 0;
-                    known[i] = (ushort)(HalfOf((isNegative ? i / 2 + 1 : i / 2) * scale) | (isNegative ? 0x8000u : 0u));
-                }
+                known[number] = Half(number, scale);
             }
             return known;
+        }
+
+        private static ushort Half(int number, float scale)
+        {
+            bool isNegative = number % 2 != 0;
+            return (ushort)(HalfOf((isNegative ? number / 2 + 1 : number / 2) * scale) | (isNegative ? 0x8000u : 0u));
         }
 
         /// <summary>The half nearest to a multiple of 2^-24 that is not negative, ties to even.</summary>
