@@ -98,7 +98,7 @@ export class Renderer {
     const expressing = avatar.expressions.length ? await import("./expressing.js") : null;
     if (this.destroyed) throw new AvatarError(AWAY); // lost meanwhile
     const needed = [
-      ...kernelsFor(this.device, avatar),
+      ...kernelsFor(this.device, avatar, expressing?.BendTexels),
       ...Object.values(kernelsOf(this.device, expressing?.KERNELS ?? {})),
     ];
     const kernels = Promise.all([this.decoding, compiled(needed)]);

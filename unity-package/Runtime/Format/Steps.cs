@@ -11,9 +11,6 @@ namespace Mua.Format
     {
         private const int Bytes = 1 << 8; // numbers of one byte
         private const int Numbers = 1 << 16;
-        private const uint LeastNormal = 113 << 23; // bits of 2^-14
-        private const uint BiasDifference = (127 - 15) << 10;
-        private const int DroppedBits = 23 - 10;
 
         private readonly ushort[][] halves = new ushort[25][]; // of the first numbers, or of all, by how often 1 is halved
 
@@ -59,7 +56,7 @@ namespace Mua.Format
             }
             for (int at = 0; at < found.Length; at++)
             {
-                found[at] = Half(low[at] | high[at] << 8, scale);
+                found[at] = HalfOf(low[at] | high[at] << 8, scale);
             }
         }
 
@@ -98,27 +95,14 @@ namespace Mua.Format
             var known = new ushort[numbers];
             for (int number = 0; number < numbers; number++)
             {
-                known[number] = Half(number, scale);
+                known[number] = HalfOf(number, scale);
             }
             return known;
         }
 
-        private static ushort Half(int number, float scale)
+        private static ushort HalfOf(int number, float scale)
         {
-            bool isNegative = number % 2 != 0;
-            return (ushort)(HalfOf((isNegative ? number / 2 + 1 : number / 2) * scale) | (isNegative ? 0x8000u : 0u));
-        }
-
-        /// <summary>The half nearest to a multiple of 2^-24 that is not negative, ties to even.</summary>
-        private static uint HalfOf(float value)
-        {
-            uint word = new Bits { Value = value }.Word;
-            if (word < LeastNormal)
-            {
-                return (uint)(value / (float)Limits.LeastStep);
-            }
-            uint half = (1u << (DroppedBits - 1)) - 1 + ((word >> DroppedBits) & 1);
-            return ((word + half) >> DroppedBits) - BiasDifference;
+            return Half.FromSingle((number % 2 == 0 ? number / 2 : -(number / 2) - 1) * scale);
         }
     }
 }
