@@ -838,24 +838,6 @@ fn withStatic_0( values_0 : vec4<f32>,  texel_0 : u32,  first_1 : u32) -> vec4<f
     return whole_0;
 }
 
-struct Bend_0
-{
-     turn_0 : vec4<f32>,
-     diagonal_0 : vec3<f32>,
-     others_0 : vec3<f32>,
-     own_0 : vec2<f32>,
-};
-
-fn noBend_0() -> Bend_0
-{
-    var bend_0 : Bend_0;
-    bend_0.turn_0 = vec4<f32>(1.0f, 0.0f, 0.0f, 0.0f);
-    bend_0.diagonal_0 = vec3<f32>(vec3<i32>(i32(1)));
-    bend_0.others_0 = vec3<f32>(vec3<i32>(i32(0)));
-    bend_0.own_0 = vec2<f32>(vec2<i32>(i32(0)));
-    return bend_0;
-}
-
 fn unpackHalves_0( word_3 : u32) -> vec2<f32>
 {
     return vec2<f32>(halfAt_0(word_3, u32(0)), halfAt_0(word_3, u32(1)));
@@ -866,16 +848,24 @@ fn unpackFour_0( words_0 : vec2<u32>) -> vec4<f32>
     return vec4<f32>(unpackHalves_0(words_0.x), unpackHalves_0(words_0.y));
 }
 
+struct Bend_0
+{
+     turn_0 : vec4<f32>,
+     diagonal_0 : vec3<f32>,
+     others_0 : vec3<f32>,
+     own_0 : vec2<f32>,
+};
+
 fn unpackBend_0( a_0 : vec2<u32>,  b_0 : vec2<u32>,  c_0 : vec2<u32>) -> Bend_0
 {
     var second_0 : vec4<f32> = unpackFour_0(b_0);
     var last_0 : vec4<f32> = unpackFour_0(c_0);
-    var bend_1 : Bend_0;
-    bend_1.turn_0 = unpackFour_0(a_0);
-    bend_1.diagonal_0 = second_0.xyz;
-    bend_1.others_0 = vec3<f32>(second_0.w, last_0.xy);
-    bend_1.own_0 = last_0.zw;
-    return bend_1;
+    var bend_0 : Bend_0;
+    bend_0.turn_0 = unpackFour_0(a_0);
+    bend_0.diagonal_0 = second_0.xyz;
+    bend_0.others_0 = vec3<f32>(second_0.w, last_0.xy);
+    bend_0.own_0 = last_0.zw;
+    return bend_0;
 }
 
 fn vertexBend_0( vertex_0 : u32) -> Bend_0
@@ -884,32 +874,51 @@ fn vertexBend_0( vertex_0 : u32) -> Bend_0
     return unpackBend_0(vertex_bends_0[at_0], vertex_bends_0[at_0 + u32(1)], vertex_bends_0[at_0 + u32(2)]);
 }
 
-fn addTurn_0( sum_4 : vec4<f32>,  turn_1 : vec4<f32>) -> vec4<f32>
+fn shareOf_0( vertex_1 : Bend_0,  share_0 : f32) -> Bend_0
 {
-    var _S31 : i32;
-    if((dot(sum_4, turn_1)) < 0.0f)
+    var part_0 : Bend_0;
+    part_0.turn_0 = vec4<f32>(share_0) * vertex_1.turn_0;
+    var _S31 : vec3<f32> = vec3<f32>(share_0);
+    part_0.diagonal_0 = _S31 * vertex_1.diagonal_0;
+    part_0.others_0 = _S31 * vertex_1.others_0;
+    var _S32 : f32;
+    if((vertex_1.own_0.y) == 2.0f)
     {
-        _S31 = i32(-1);
+        _S32 = 0.0f;
     }
     else
     {
-        _S31 = i32(1);
+        _S32 = share_0;
     }
-    return sum_4 + vec4<f32>(f32(_S31)) * turn_1;
+    part_0.own_0 = vec2<f32>(_S32, share_0 * vertex_1.own_0.x);
+    return part_0;
 }
 
-fn bendAt_0( texel_1 : u32,  gain_0 : ptr<function, f32>) -> Bend_0
+fn addTurn_0( sum_4 : vec4<f32>,  turn_1 : vec4<f32>) -> vec4<f32>
+{
+    var _S33 : i32;
+    if((dot(sum_4, turn_1)) < 0.0f)
+    {
+        _S33 = i32(-1);
+    }
+    else
+    {
+        _S33 = i32(1);
+    }
+    return sum_4 + vec4<f32>(f32(_S33)) * turn_1;
+}
+
+fn bendAt_0( texel_1 : u32,  bends_0 : ptr<function, bool>) -> Bend_0
 {
     var place_0 : vec2<u32> = texels_0[texel_1];
-    var _S32 : u32 = u32(3) * (((place_0.x) & (u32(2147483647))));
-    var _S33 : u32 = place_0.y;
-    var shares_0 : vec2<f32> = vec2<f32>(f32((_S33 & (u32(65535)))), f32((_S33 >> (u32(16))))) / vec2<f32>(65535.0f);
-    var _S34 : vec3<f32> = vec3<f32>(shares_0, max(1.0f - shares_0.x - shares_0.y, 0.0f));
-    var sum_5 : Bend_0 = noBend_0();
-    sum_5.turn_0 = vec4<f32>(vec4<i32>(i32(0)));
-    sum_5.diagonal_0 = vec3<f32>(vec3<i32>(i32(0)));
-    (*gain_0) = 0.0f;
-    var i_2 : u32 = u32(0);
+    var face_0 : u32 = u32(3) * (((place_0.x) & (u32(2147483647))));
+    var _S34 : u32 = place_0.y;
+    var shares_0 : vec2<f32> = vec2<f32>(f32((_S34 & (u32(65535)))), f32((_S34 >> (u32(16))))) / vec2<f32>(65535.0f);
+    var barycentric_0 : vec3<f32> = vec3<f32>(shares_0, max(1.0f - shares_0.x - shares_0.y, 0.0f));
+    var corner_1 : Bend_0 = vertexBend_0(faces_0[face_0]);
+    var sum_5 : Bend_0 = shareOf_0(corner_1, barycentric_0.x);
+    (*bends_0) = (corner_1.own_0.y) != 0.0f;
+    var i_2 : u32 = u32(1);
     for(;;)
     {
         if(i_2 < u32(3))
@@ -919,34 +928,22 @@ fn bendAt_0( texel_1 : u32,  gain_0 : ptr<function, f32>) -> Bend_0
         {
             break;
         }
-        var one_0 : Bend_0 = vertexBend_0(faces_0[_S32 + i_2]);
-        var _S35 : u32 = i_2;
-        sum_5.turn_0 = addTurn_0(sum_5.turn_0, vec4<f32>(_S34[i_2]) * one_0.turn_0);
-        var _S36 : vec3<f32> = vec3<f32>(_S34[i_2]);
-        sum_5.diagonal_0 = sum_5.diagonal_0 + _S36 * one_0.diagonal_0;
-        sum_5.others_0 = sum_5.others_0 + _S36 * one_0.others_0;
-        var _S37 : f32 = one_0.own_0.y;
-        var _S38 : f32;
-        if(_S37 == 2.0f)
+        var corner_2 : Bend_0 = vertexBend_0(faces_0[face_0 + i_2]);
+        var part_1 : Bend_0 = shareOf_0(corner_2, barycentric_0[i_2]);
+        sum_5.turn_0 = addTurn_0(sum_5.turn_0, part_1.turn_0);
+        sum_5.diagonal_0 = sum_5.diagonal_0 + part_1.diagonal_0;
+        sum_5.others_0 = sum_5.others_0 + part_1.others_0;
+        sum_5.own_0 = sum_5.own_0 + part_1.own_0;
+        var _S35 : bool;
+        if((*bends_0))
         {
-            _S38 = 0.0f;
+            _S35 = true;
         }
         else
         {
-            _S38 = _S34[_S35];
+            _S35 = (corner_2.own_0.y) != 0.0f;
         }
-        sum_5.own_0[i32(0)] = sum_5.own_0[i32(0)] + _S38;
-        var _S39 : f32;
-        if(_S37 == 0.0f)
-        {
-            _S39 = 0.0f;
-        }
-        else
-        {
-            _S39 = _S34[_S35];
-        }
-        sum_5.own_0[i32(1)] = sum_5.own_0[i32(1)] + _S39;
-        (*gain_0) = (*gain_0) + _S34[_S35] * one_0.own_0.x;
+        (*bends_0) = _S35;
         i_2 = i_2 + u32(1);
     }
     return sum_5;
@@ -954,18 +951,18 @@ fn bendAt_0( texel_1 : u32,  gain_0 : ptr<function, f32>) -> Bend_0
 
 fn quaternionRotate_0( q_0 : vec4<f32>,  v_0 : vec3<f32>) -> vec3<f32>
 {
-    var _S40 : vec3<f32> = q_0.yzw;
-    var t_0 : vec3<f32> = vec3<f32>(2.0f) * cross(_S40, v_0);
-    return v_0 + vec3<f32>(q_0.x) * t_0 + cross(_S40, t_0);
+    var _S36 : vec3<f32> = q_0.yzw;
+    var t_0 : vec3<f32> = vec3<f32>(2.0f) * cross(_S36, v_0);
+    return v_0 + vec3<f32>(q_0.x) * t_0 + cross(_S36, t_0);
 }
 
 fn quaternionMultiply_0( a_1 : vec4<f32>,  b_1 : vec4<f32>) -> vec4<f32>
 {
-    var _S41 : f32 = a_1.x;
-    var _S42 : f32 = b_1.x;
-    var _S43 : vec3<f32> = a_1.yzw;
-    var _S44 : vec3<f32> = b_1.yzw;
-    return vec4<f32>(_S41 * _S42 - dot(_S43, _S44), vec3<f32>(_S41) * _S44 + vec3<f32>(_S42) * _S43 + cross(_S43, _S44));
+    var _S37 : f32 = a_1.x;
+    var _S38 : f32 = b_1.x;
+    var _S39 : vec3<f32> = a_1.yzw;
+    var _S40 : vec3<f32> = b_1.yzw;
+    return vec4<f32>(_S37 * _S38 - dot(_S39, _S40), vec3<f32>(_S37) * _S40 + vec3<f32>(_S38) * _S39 + cross(_S39, _S40));
 }
 
 fn packHalves_0( values_1 : vec2<f32>) -> u32
@@ -988,31 +985,31 @@ fn writeTexel_0( texel_2 : u32,  row_3 : u32,  values_3 : vec4<f32>)
 @workgroup_size(16, 16, 1)
 fn BendTexels(@builtin(workgroup_id) group_0 : vec3<u32>, @builtin(local_invocation_id) thread_2 : vec3<u32>)
 {
-    var _S45 : u32 = group_0.x;
-    var _S46 : vec2<u32> = thread_2.xy;
-    loadBatch_0(_S45, _S46, u32(0));
+    var _S41 : u32 = group_0.x;
+    var _S42 : vec2<u32> = thread_2.xy;
+    loadBatch_0(_S41, _S42, u32(0));
     workgroupBarrier();
     var batches_0 : array<vec4<f32>, i32(3)>;
-    var _S47 : vec4<f32> = batchAt_0(_S45, _S46);
-    batches_0[i32(0)] = _S47;
+    var _S43 : vec4<f32> = batchAt_0(_S41, _S42);
+    batches_0[i32(0)] = _S43;
     workgroupBarrier();
-    loadBatch_0(_S45, _S46, u32(4));
+    loadBatch_0(_S41, _S42, u32(4));
     workgroupBarrier();
-    var _S48 : vec4<f32> = batchAt_0(_S45, _S46);
-    batches_0[i32(1)] = _S48;
+    var _S44 : vec4<f32> = batchAt_0(_S41, _S42);
+    batches_0[i32(1)] = _S44;
     workgroupBarrier();
-    loadBatch_0(_S45, _S46, u32(8));
+    loadBatch_0(_S41, _S42, u32(8));
     workgroupBarrier();
-    var _S49 : vec4<f32> = batchAt_0(_S45, _S46);
-    batches_0[i32(2)] = _S49;
-    var run_1 : vec2<u32> = tileRow_0(_S45, thread_2.y);
-    var _S50 : u32 = run_1.y;
-    var _S51 : u32 = thread_2.x;
-    if(!isIn_0(_S50, _S51))
+    var _S45 : vec4<f32> = batchAt_0(_S41, _S42);
+    batches_0[i32(2)] = _S45;
+    var run_1 : vec2<u32> = tileRow_0(_S41, thread_2.y);
+    var _S46 : u32 = run_1.y;
+    var _S47 : u32 = thread_2.x;
+    if(!isIn_0(_S46, _S47))
     {
         return;
     }
-    var texel_3 : u32 = texelOf_0(run_1, _S51);
+    var texel_3 : u32 = texelOf_0(run_1, _S47);
     var i_3 : u32 = u32(0);
     for(;;)
     {
@@ -1023,35 +1020,34 @@ fn BendTexels(@builtin(workgroup_id) group_0 : vec3<u32>, @builtin(local_invocat
         {
             break;
         }
-        var _S52 : vec4<f32> = withStatic_0(batches_0[i_3], texel_3, u32(4) * i_3);
-        batches_0[i_3] = _S52;
+        var _S48 : vec4<f32> = withStatic_0(batches_0[i_3], texel_3, u32(4) * i_3);
+        batches_0[i_3] = _S48;
         i_3 = i_3 + u32(1);
     }
     var row_4 : u32;
-    if(isIn_0((_S50 >> (u32(16))), _S51))
+    if(isIn_0((_S46 >> (u32(16))), _S47))
     {
-        var gain_1 : f32;
-        var bend_2 : Bend_0 = bendAt_0(texel_3, &(gain_1));
-        batches_0[i32(2)][i32(3)] = gain_1;
-        var _S53 : f32 = bend_2.own_0.x;
-        var _S54 : bool;
-        if(_S53 > 0.0f)
+        var bends_1 : bool;
+        var bend_1 : Bend_0 = bendAt_0(texel_3, &(bends_1));
+        batches_0[i32(2)][i32(3)] = bend_1.own_0.y;
+        var _S49 : bool;
+        if(bends_1)
         {
-            _S54 = (bend_2.own_0.y) > 0.0f;
+            _S49 = (bend_1.own_0.x) > 0.0f;
         }
         else
         {
-            _S54 = false;
+            _S49 = false;
         }
-        if(_S54)
+        if(_S49)
         {
-            var turn_2 : vec4<f32> = bend_2.turn_0 / vec4<f32>(max(length(bend_2.turn_0), 1.17549435082228751e-38f));
+            var turn_2 : vec4<f32> = bend_1.turn_0 / vec4<f32>(max(length(bend_1.turn_0), 1.17549435082228751e-38f));
             var rotation_0 : vec4<f32> = vec4<f32>(batches_0[i32(0)].w, batches_0[i32(1)].xyz);
-            var _S55 : vec4<f32> = rotation_0 / vec4<f32>(max(length(rotation_0), 1.17549435082228751e-38f));
-            var _S56 : vec3<f32> = vec3<f32>(bend_2.diagonal_0.x, bend_2.others_0.xy);
-            var _S57 : vec3<f32> = vec3<f32>(bend_2.others_0.x, bend_2.diagonal_0.y, bend_2.others_0.z);
-            var _S58 : vec3<f32> = vec3<f32>(bend_2.others_0.yz, bend_2.diagonal_0.z);
-            var _S59 : array<vec3<f32>, i32(3)> = array<vec3<f32>, i32(3)>( vec3<f32>(1.0f, 0.0f, 0.0f), vec3<f32>(0.0f, 1.0f, 0.0f), vec3<f32>(0.0f, 0.0f, 1.0f) );
+            var _S50 : vec4<f32> = rotation_0 / vec4<f32>(max(length(rotation_0), 1.17549435082228751e-38f));
+            var _S51 : vec3<f32> = vec3<f32>(bend_1.diagonal_0.x, bend_1.others_0.xy);
+            var _S52 : vec3<f32> = vec3<f32>(bend_1.others_0.x, bend_1.diagonal_0.y, bend_1.others_0.z);
+            var _S53 : vec3<f32> = vec3<f32>(bend_1.others_0.yz, bend_1.diagonal_0.z);
+            var _S54 : array<vec3<f32>, i32(3)> = array<vec3<f32>, i32(3)>( vec3<f32>(1.0f, 0.0f, 0.0f), vec3<f32>(0.0f, 1.0f, 0.0f), vec3<f32>(0.0f, 0.0f, 1.0f) );
             var scale_0 : vec3<f32> = vec3<f32>(vec3<i32>(i32(0)));
             row_4 = u32(0);
             for(;;)
@@ -1063,16 +1059,16 @@ fn BendTexels(@builtin(workgroup_id) group_0 : vec3<u32>, @builtin(local_invocat
                 {
                     break;
                 }
-                var axis_0 : vec3<f32> = quaternionRotate_0(_S55, _S59[row_4]);
-                scale_0[row_4] = log(clamp(length(vec3<f32>(axis_0.x) * _S56 + vec3<f32>(axis_0.y) * _S57 + vec3<f32>(axis_0.z) * _S58) / _S53, 0.05000000074505806f, 20.0f));
+                var axis_0 : vec3<f32> = quaternionRotate_0(_S50, _S54[row_4]);
+                scale_0[row_4] = log(clamp(length(vec3<f32>(axis_0.x) * _S51 + vec3<f32>(axis_0.y) * _S52 + vec3<f32>(axis_0.z) * _S53) / bend_1.own_0.x, 0.05000000074505806f, 20.0f));
                 row_4 = row_4 + u32(1);
             }
             var rotation_1 : vec4<f32> = quaternionMultiply_0(turn_2, rotation_0);
             batches_0[i32(0)] = vec4<f32>(quaternionRotate_0(turn_2, batches_0[i32(0)].xyz), rotation_1.x);
             batches_0[i32(1)] = vec4<f32>(rotation_1.yzw, batches_0[i32(1)].w + scale_0.x);
-            var _S60 : vec2<f32> = batches_0[i32(2)].xy + scale_0.yz;
-            batches_0[i32(2)].x = _S60.x;
-            batches_0[i32(2)].y = _S60.y;
+            var _S55 : vec2<f32> = batches_0[i32(2)].xy + scale_0.yz;
+            batches_0[i32(2)].x = _S55.x;
+            batches_0[i32(2)].y = _S55.y;
         }
     }
     row_4 = u32(0);
