@@ -31,7 +31,7 @@ from mua.student.settings import Ranks, Settings
 HEIGHT, RADIUS = 1.7, 0.18  # metres
 HOLE = 0.02  # share of the radius left at both ends, so that no triangle has zero area
 RINGS, SPOKES = 102, 54  # 5,508 vertices; the template of the paper's family has 5,514
-# A face as large as a Ready Player Me figure's (docs/research/faces.md): 66 expressions of 40,094 entries at 2,101 vertices.
+# A face as large as that of a Ready Player Me figure: 66 expressions of 40,094 entries at 2,101 vertices.
 FACE_RINGS = 39  # all of whose vertices some expression moves, at the upper end
 FACE = 1 / 6  # share of the texels that are in reach of these
 ENTRIES = np.linspace(17, 1198, 66).astype(int)  # vertices of each expression
