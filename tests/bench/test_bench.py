@@ -54,32 +54,24 @@ def test_synthesis_of_one_channel_from_two_by_two() -> None:
 
 def test_upsampling_costs_what_its_valid_texels_need() -> None:
     # a filter of 3 samples by 4 phases, from 4 x 4 samples of 5 channels to 7 valid texels
-    read = {"static_offset": 2 * 35, "tiles": 4 * 3, "tile_rows": 128 * 3, "upsampling": 4 * 12}
+    read = {"static_offset": 2 * 35, "tiles": 136 * 3, "upsampling": 4 * 12}
     levels = bound("UpsampleTexels", read, channels=5, size=4, texel_count=7, reach=3, factor=4)
-    moved = 2 * 35 + 132 * 3 + 2 * 5 * 16 + 4 * 12 + 2 * 8 * 7
+    moved = 2 * 35 + 136 * 3 + 2 * 5 * 16 + 4 * 12 + 2 * 8 * 7
     assert cost(levels) == Work(bytes=moved, flops=35 * (2 * 3 + 2 * 3 // 4 + 1))
 
 
 def test_a_face_costs_what_its_entries_and_the_texels_in_reach_need() -> None:
-    entries = {"vertices": 4 * 10, "starts": 4 * 11, "expressions": 4 * 25, "changes": 16 * 25, "weights": 4 * 3}
+    entries = {"vertices": 4 * 10, "starts": 4 * 11, "expressions": 4 * 13, "changes": 8 * 25, "weights": 4 * 3}
     vertices = bound("SumTargets", entries | {"moved": 16 * 99, "mesh": 12 * 99}, vertex_count=10)
-    assert cost(vertices) == Work(bytes=40 + 44 + 100 + 400 + 12 + 40 * 10, flops=2 * 100 + 30)
-    read = {"vertices": 4 * 8, "corners": 12 * 6, "mesh": 12 * 99, "moved": 12 * 99, "triangle_bends": 48 * 6}
+    assert cost(vertices) == Work(bytes=40 + 44 + 52 + 200 + 12 + 40 * 10, flops=2 * 100 + 30)
+    read = {"corners": 12 * 6, "mesh": 12 * 99, "moved": 16 * 99, "triangle_bends": 24 * 6}
     triangles = bound("BendTriangles", read, triangle_count=6)
-    assert cost(triangles) == Work(bytes=32 + 72 + 28 * 8 + 288, flops=6 * work.BEND_TRIANGLE)
-    read = {"starts": 4 * 9, "stars": 12 * 6, "triangle_bends": 48 * 6, "vertex_bends": 48 * 8}
-    vertices = bound("BendVertices", read, vertex_count=8)
-    assert cost(vertices) == Work(bytes=36 + 72 + 288 + 384, flops=18 * work.ADD_BEND + 8 * 12)
-    read = {
-        "reached": 8 * 5,
-        "texels": 8 * 99,
-        "corners": 12 * 6,
-        "vertices": 4 * 8,
-        "vertex_bends": 48 * 8,
-        "moved": 9,
-    }
-    texels = bound("BendTexels", read, texel_count=5)
-    assert cost(texels) == Work(bytes=40 + 72 + 32 + 384 + 16 * 8 + 5 * (8 + 32 + 32), flops=5 * work.BEND_TEXEL)
+    assert cost(triangles) == Work(bytes=72 + 144, flops=6 * work.BEND_TRIANGLE)
+    read = {"vertices": 4 * 8, "starts": 4 * 9, "stars": 12 * 6, "triangle_bends": 24 * 6, "moved": 16 * 99}
+    vertices = bound("BendVertices", read | {"vertex_bends": 24 * 99}, vertex_count=8)
+    assert cost(vertices) == Work(bytes=32 + 36 + 72 + 144 + (16 + 24) * 8, flops=18 * work.ADD_BEND + 8 * 12)
+    reach = work.gathered(vertices=8, triangles=6, texels=5)
+    assert reach == Work(bytes=(12 + 16 + 24) * 8 + 12 * 6 + (8 + 8) * 5, flops=5 * work.BEND_TEXEL)
 
 
 def projected(texels: int, vertices: int, faces: int, eyes: int) -> Bound:

@@ -27,7 +27,7 @@ def test_an_avatar_costs_what_it_did(device: Device, name: str, tmp_path: Path) 
     write(path, random_avatar(preset(name)))
     found = json.loads(json.dumps(as_json(count(device, path))))
     assert found.keys() == kept.keys()
-    for field in ("file_bytes", "parameters", "splats", "parts", "dispatches"):
+    for field in ("file_bytes", "parameters", "splats", "parts", "dispatches", "face"):
         assert found[field] == kept[field]
     for field in ("bytes", "operations"):
         assert found[field]["decode"] == kept[field]["decode"]
@@ -40,3 +40,10 @@ def test_an_avatar_costs_what_it_did(device: Device, name: str, tmp_path: Path) 
     for level, was in zip(found["levels"], kept["levels"], strict=True):
         assert level["bytes"] == pytest.approx(was["bytes"], rel=ROUNDED)
         assert (level["texels"], level["splats"]) == (was["texels"], was["splats"])
+
+
+def test_a_face_costs_at_most_a_twentieth_of_a_decode_of_the_papers_size() -> None:
+    """As large as that of a Ready Player Me figure; all of its expressions move."""
+    kept = json.loads((KEPT / "paper.json").read_text())
+    assert kept["face"]["bytes"] <= 0.05 * kept["bytes"]["decode"]
+    assert kept["face"]["flops"] <= 0.05 * kept["operations"]["decode"]

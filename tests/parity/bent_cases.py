@@ -1,20 +1,26 @@
 """Triangles that expressions bend, and what rounding may leave of the texels on them."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
-from golden_case import UNTOUCHED
+from dwt_cases import taps, upsampling_bound
 from skinned_cases import ULP
+from stored import store
 
 from mua.arrays import Array
-from mua.kernels.expressions import STILL, Targets, by_vertex
+from mua.channels import APPEARANCE
+from mua.kernels.expressions import STILL, Targets, bend_texels, by_vertex
+from mua.kernels.inverse_dwt import pack_planes, texel_tiles, unpack_planes, upsample_texels, upsampling_taps
 
 SIDES = (0.2, 2.0)  # metres, of edges and heights before and after
 EXTENT = 4.0  # metres, of coordinates
 LARGEST = 65535  # barycentric of 1
 # Edges are differences of coordinates that were rounded three times; what follows is at most 64 roundings more.
 BENT_BOUND = (3 * EXTENT / SIDES[0] + 64) * ULP * SIDES[1] / SIDES[0]
-WEIGHED_BOUND = 2 * SIDES[1] ** 2 * BENT_BOUND  # times an area of at most SIDES[1] ** 2, which is rounded as well
+PER_METRE = 1024  # of the root of an area
+WEIGHED_BOUND = 2 * SIDES[1] ** 2 * BENT_BOUND  # of an area of at most SIDES[1] ** 2
+ROOT_BOUND = WEIGHED_BOUND / SIDES[0]  # of its root, which is at least SIDES[0] / sqrt(2)
 STAR = 12  # triangles about a vertex at most
 MOST_BENT = 3.0  # stretches in cases for vertices and texels
 MEAN_BOUND = 2 * (STAR + 4) * ULP * MOST_BENT
@@ -23,6 +29,9 @@ LIT_BOUND = 8 * ULP * 8
 # Offsets of at most 2 metres, quaternions of at most 2 and logarithms, of 48 products and sums whose roundings partly
 # cancel: on every device so far 32 sufficed.
 TURNED_BOUND = 2 * 32 * ULP
+# What the channels lost before, in rotations of length 0.5 and stretches that differ by MOST_BENT squared.
+BEFORE = 2 * MOST_BENT**2
+GEOMETRY = APPEARANCE.start  # channels
 
 
 @dataclass(frozen=True)
@@ -74,18 +83,90 @@ def random_bends(rng: np.random.Generator, count: int, *, still: int = 0) -> Arr
 def random_stars(rng: np.random.Generator, count: int) -> tuple[Array, Array, Array]:
     """Rows of triangles [T, 12], and which of them are about vertices: some have no area, some do not move."""
     rows = random_bends(rng, 3 * count)
-    rows *= rng.uniform(0.1, 2, (3 * count, 1)) * (rng.random((3 * count, 1)) < 0.8)
+    rows[:, 10] = rng.uniform(0.3, 1.4, 3 * count) * (rng.random(3 * count) < 0.8)
     rows[:, 11] = rng.random(3 * count) < 0.4
     counts = rng.integers(0, STAR + 1, count)
     starts = np.concatenate([[0], np.cumsum(counts)])
-    return rows.astype(np.float32), starts.astype(np.uint32), rng.integers(0, 3 * count, starts[-1]).astype(np.uint32)
+    stars = rng.integers(0, 3 * count, starts[-1])
+    return rounded(rows), starts.astype(np.uint32), stars.astype(np.uint32)
 
 
-def random_light(rng: np.random.Generator, count: int, *, dark: int = 0) -> tuple[Array, Array]:
-    """Vertices [count] of a mesh in any order, and its gains in [count, 4]; the last vertices have none."""
-    vertices, changes = rng.permutation(count), np.full((count, 4), UNTOUCHED)
-    changes[vertices, 3] = np.where(np.arange(count) < count - dark, rng.uniform(-1, 1, count), 0)
-    return vertices.astype(np.uint32), changes.astype(np.float32)
+def rounded(values: Array) -> Array:
+    """To half floats."""
+    return values.astype(np.float16).astype(np.float32)
+
+
+def triangle_words(
+    rows: Array,  # [T, 12]
+) -> Array:
+    """What the kernels hold of bent triangles, [T, 3, 2]."""
+    return _words(np.column_stack([rows[:, :10], PER_METRE * rows[:, 10], rows[:, 11]]))
+
+
+def vertex_numbers(
+    rows: Array,  # [V, 12]
+    gains: Array,  # [V]
+) -> Array:
+    """What half floats of bent vertices are, [V, 12]: the last 0 where one does not bend, 2 where it does not count."""
+    return np.column_stack([rows[:, :10], gains, np.where(rows[:, 11] > 0, np.where(rows[:, 10] > 0, 1, 2), 0)])
+
+
+def _words(numbers: Array) -> Array:
+    return numbers.astype("<f2").view("<u4").reshape(-1, 3, 2)
+
+
+@dataclass(frozen=True)
+class BentTexels:
+    """A dispatch of BendTexels, and geometry [N, 12] with the gains that it leaves."""
+
+    groups: tuple[int, int, int]
+    constants: dict[str, Any]
+    buffers: dict[str, Array]  # but for the channels
+    plain: Array  # geometry before it bends
+    expected: Array
+    bends: Array  # [N] bool
+    bound: float
+
+
+def bent_texels(rng: np.random.Generator, count: int) -> BentTexels:
+    """Some out of reach, some between corners that do not bend or do not count, some that stretch beyond all bounds."""
+    side, vertices = int(np.ceil(np.sqrt(count))), 2 * count + 3
+    lo, texture = taps("bior4.4")[0], random_texture(rng, count)
+    ll = pack_planes(0.02 * rng.normal(size=(GEOMETRY, side, side)))
+    texels, reached = np.sort(rng.permutation(4 * side * side)[:count]), rng.random(count) < 0.8
+    static = store(np.ascontiguousarray(texture[:, :GEOMETRY].T), "f32", rows=GEOMETRY)
+    filtered, delay = upsampling_taps(lo, 1)
+    rows, faces = rounded(random_bends(rng, vertices, still=count + 2)), rng.integers(0, vertices, (count + 4, 3))
+    faces[0], faces[1] = 0, vertices - 1
+    rows[0, 4:10] *= 100  # beyond MOST_STRETCH
+    rows[1, :11] = 0  # it does not count
+    gains = rounded(np.where(np.arange(vertices) < vertices - count, rng.uniform(-1, 1, vertices), 0))
+    triangles, (words, barycentrics) = rng.integers(0, len(faces), count), random_places(rng, count)
+    words[:, 0] = triangles | (rng.random(count) < 0.5).astype(np.uint32) << 31
+    plain = upsample_texels(unpack_planes(ll).astype(float), lo, 1, texels=texels, static_offset=static.values).T
+    plain = np.pad(plain, ((0, 0), (0, 23 - GEOMETRY)))
+    corners = faces[triangles]
+    bent = bend_texels(rows.astype(float), corners, barycentrics, plain)
+    light = np.einsum("nk,nk->n", barycentrics, gains[corners].astype(float))
+    plain, bent = (np.column_stack([a[:, :GEOMETRY], g]) for a, g in ((plain, 0 * light), (bent, light)))
+    largest = float(np.abs(unpack_planes(ll)).max(initial=0))
+    tiles = texel_tiles(texels, 2 * side, reached)
+    return BentTexels(
+        groups=(len(tiles), 1, 1),
+        constants={
+            **{"static_offset_layout": static.layout, "channels": GEOMETRY, "size": side},
+            **{"factor": 2, "reach": len(filtered), "delay": delay, "texel_count": count},
+        },
+        buffers={
+            **{"ll": ll, "upsampling": filtered.astype(np.float32), "tiles": tiles, "static_offset": static.words},
+            **{"faces": faces.astype(np.uint32), "texels": words},
+            "vertex_bends": _words(vertex_numbers(rows, gains)),
+        },
+        plain=plain,
+        expected=np.where(reached[:, None], bent, plain),
+        bends=reached & (rows[:, 11] > 0)[corners].any(axis=1) & (rows[:, 10] > 0)[corners].any(axis=1),
+        bound=TURNED_BOUND + BEFORE * upsampling_bound(filtered, largest, float(np.abs(static.values).max(initial=0))),
+    )
 
 
 def random_places(rng: np.random.Generator, count: int) -> tuple[Array, Array]:
@@ -112,4 +193,4 @@ def random_targets(rng: np.random.Generator, vertices: Array, expressions: int) 
     held[0] = True  # each vertex is moved by one
     starts = np.concatenate([[0], np.cumsum(held.sum(axis=1))])
     at = np.concatenate([vertices[row] for row in held])
-    return by_vertex(starts, at, rng.normal(0, 0.1, (len(at), 4)).astype(np.float32))
+    return by_vertex(starts, at, rounded(rng.normal(0, 0.1, (len(at), 4))))

@@ -20,7 +20,7 @@ _BLEND = [*["MlpMatmul"] * 3, "BlendLl", "BlendDetail", "InverseDwt", "BlendDeta
 _TEXELS = ["InverseDwt", "UpsampleTexels"]
 _MESH = [*["MlpMatmul"] * 3, "MlpMatmulTransposed"]
 
-PARTS_ORDER = [_BLEND, [*_TEXELS, *_MESH], _BLEND, _TEXELS]  # in the parts of a decode
+PARTS_ORDER = [_BLEND, [*_MESH, *_TEXELS], _BLEND, _TEXELS]  # in the parts of a decode
 
 DECODE_ORDER = [name for part in PARTS_ORDER for name in part]
 

@@ -4,17 +4,17 @@ from functools import partial
 
 import numpy as np
 from bent_cases import (
+    BENT_BOUND,
     LIT_BOUND,
     MEAN_BOUND,
-    TURNED_BOUND,
-    WEIGHED_BOUND,
-    random_bends,
-    random_light,
-    random_places,
+    PER_METRE,
+    ROOT_BOUND,
+    bent_texels,
     random_stars,
     random_targets,
-    random_texture,
+    triangle_words,
     triangles,
+    vertex_numbers,
 )
 from dwt_cases import taps, upsampling_bound
 from golden_case import UNTOUCHED, UNWRITTEN, Case, Expected, halves
@@ -29,9 +29,10 @@ from splat_rounding import ULP
 from stored import STORAGES, groups, store
 
 from mua.asset.tensors import Element
+from mua.channels import SH_C0
 from mua.kernels.blend_subbands import blend_detail, blend_ll
 from mua.kernels.dq_skinning import blend_vertices
-from mua.kernels.expressions import bend_texels, bend_triangles, bend_vertices, brighten_texels
+from mua.kernels.expressions import MIDDLE, bend_triangles, bend_vertices, pack_entries
 from mua.kernels.inverse_dwt import (
     inverse_dwt,
     pack_planes,
@@ -54,7 +55,8 @@ def blend_subbands_cases() -> list[Case]:
 
 def inverse_dwt_cases() -> list[Case]:
     levels = [_level(name) for name in ("bior4.4", "bior2.2")]
-    return levels + [_texels_of(storage, levels=n) for storage in STORAGES for n in (1, 2)]
+    texels = [_texels_of(storage, levels=n) for storage in STORAGES for n in (1, 2)]
+    return [*levels, *texels, _texels_of("f32", levels=1, lit=True)]
 
 
 def dq_skinning_cases() -> list[Case]:
@@ -62,7 +64,7 @@ def dq_skinning_cases() -> list[Case]:
 
 
 def expressions_cases() -> list[Case]:
-    return [_targets(), _triangles(), _bent_vertices(), _texels()]
+    return [_targets(), _triangles(), _bent_vertices(), _bent_texels()]
 
 
 def _layer(storage: Element, *, relu: int) -> Case:
@@ -167,7 +169,7 @@ def _level(wavelet: str) -> Case:
     )
 
 
-def _texels_of(storage: Element, *, levels: int) -> Case:
+def _texels_of(storage: Element, *, levels: int, lit: bool = False) -> Case:
     channels, rows, size, count, first = 5, 2, 5, 101, 2
     rng = np.random.default_rng(4)
     lo = taps("bior4.4")[0]
@@ -177,28 +179,34 @@ def _texels_of(storage: Element, *, levels: int) -> Case:
     texels = np.sort(rng.permutation(side * side)[: min(count, side * side)])
     count = len(texels)
     offset = store(rng.normal(size=(channels, count)), storage, rows=channels)
-    tiles, tile_rows = texel_tiles(texels, side)
+    reached, gains = rng.random(count) < 0.7, rng.uniform(-1, 1, (count, 2)).astype("<f2")
+    tiles = texel_tiles(texels, side, reached)
+    before = np.full((first + rows + 1, count, 2), UNWRITTEN)
+    before[first - 1, :, 1] = gains.view("<u4")[:, 0]
     filtered, delay = upsampling_taps(lo, levels)
     reach, factor = filtered.shape
     exact = upsample_texels(ll.astype(float), lo, levels, texels=texels, static_offset=offset.values)
+    if lit:
+        exact[:3] += np.where(reached, gains[:, 1] * (exact[:3] + MIDDLE / SH_C0), 0)
     padded = np.concatenate([exact, np.zeros((4 * rows - channels, count))])
     found = padded.reshape(rows, 4, count).swapaxes(1, 2)
     bound = upsampling_bound(filtered, float(np.abs(ll).max()), float(np.abs(offset.values).max()))
+    bound = 2 * bound + LIT_BOUND if lit else bound
     return Case(
-        f"{storage}, {levels} levels",
+        f"{storage}, {levels} levels" + ", lit" * lit,
         "UpsampleTexels",
         (len(tiles), 1, rows),
         {
             **{"static_offset_layout": offset.layout, "channels": channels, "size": size},
             **{"factor": factor, "reach": reach, "delay": delay},
-            **{"texel_count": count, "first_row": first},
+            **{"texel_count": count, "first_row": first, "lit": int(lit)},
         },
         {
-            **{"ll": packed, "upsampling": filtered.astype(np.float32), "tiles": tiles, "tile_rows": tile_rows},
-            **{"static_offset": offset.words, "texel_channels": np.full((first + rows + 1, count, 2), UNWRITTEN)},
+            **{"ll": packed, "upsampling": filtered.astype(np.float32), "tiles": tiles},
+            **{"static_offset": offset.words, "texel_channels": before},
         },
         (
-            Expected("texel_channels", "uint", np.full(2 * first * count, UNWRITTEN)),
+            Expected("texel_channels", "uint", before[:first]),
             halves("texel_channels", found, bound, first=2 * first * count),
             Expected(
                 "texel_channels",
@@ -245,8 +253,8 @@ def _targets() -> Case:
         {"vertex_count": count},
         {
             **{"vertices": targets.vertices.astype(np.uint32), "starts": targets.starts.astype(np.uint32)},
-            **{"expressions": targets.expressions.astype(np.uint32), "changes": targets.changes, "weights": weights},
-            **{"moved": untouched, "mesh": mesh},
+            **dict(zip(("expressions", "changes"), pack_entries(targets), strict=True)),
+            **{"weights": weights, "moved": untouched, "mesh": mesh},
         },
         (
             Expected("moved", "float", moved, bound, length=4, period=8),
@@ -260,86 +268,61 @@ def _targets() -> Case:
 def _triangles() -> Case:
     """The first triangles bend, the others have no area or do not move; one is out of reach."""
     bent = triangles(np.random.default_rng(7), 70)
-    count, inner = len(bent.faces), bent.bending
-    held = bend_triangles(bent.mesh.astype(float), bent.moved.astype(float), bent.faces)
-    vertices = np.random.default_rng(9).permutation(len(bent.mesh))
-    places = np.argsort(vertices)[bent.faces]
+    count = len(bent.faces)
+    held = bend_triangles(bent.mesh.astype(float), bent.moved.astype(float), bent.faces)[1:]
+    bends = partial(halves, "triangle_bends", period=6)
     return Case(
         "edges of 0.2 to 2 metres",
         "BendTriangles",
         groups((count - 1, 64)),
         {"triangle_count": count - 1},
         {
-            **{"vertices": vertices.astype(np.uint32), "corners": places[1:].astype(np.uint32)},
+            "corners": bent.faces[1:].astype(np.uint32),
             **{"moved": np.pad(bent.moved, ((0, 0), (0, 1))), "mesh": bent.mesh + bent.moved},
-            "triangle_bends": np.full((count, 3, 4), UNTOUCHED),
+            "triangle_bends": np.full((count, 3, 2), UNWRITTEN),
         },
         (
-            Expected("triangle_bends", "float", held[1:inner], WEIGHED_BOUND),
-            Expected("triangle_bends", "float", held[inner : inner + 3], first=12 * (inner - 1)),
-            Expected("triangle_bends", "float", held[-1:], WEIGHED_BOUND, first=12 * (count - 2)),
-            Expected("triangle_bends", "float", np.full(12, UNTOUCHED), first=12 * (count - 1)),
+            bends(held[:, :10], BENT_BOUND, length=5),
+            bends(held[:, 10:] * [PER_METRE, 1], PER_METRE * ROOT_BOUND, first=5),
+            Expected("triangle_bends", "uint", np.full(6, UNWRITTEN), first=6 * (count - 1)),
         ),
     )
 
 
 def _bent_vertices() -> Case:
-    """About each vertex up to 12 triangles, some of no area and some that do not move."""
-    count = 70
-    rows, starts, stars = random_stars(np.random.default_rng(10), count)
-    expected = bend_vertices(rows.astype(float), starts.astype(int), stars.astype(int))
+    """About each vertex up to 12 triangles, some of no area and some that do not move; every other one is in reach."""
+    rng, count = np.random.default_rng(10), 70
+    rows, starts, stars = random_stars(rng, count)
+    moved = rng.normal(size=(2 * count, 4)).astype(np.float32)
+    means = bend_vertices(rows.astype(float), starts.astype(int), stars.astype(int))
     return Case(
         "up to 12 triangles about each",
         "BendVertices",
         groups((count, 64)),
         {"vertex_count": count},
         {
-            **{"starts": starts, "stars": stars, "triangle_bends": rows.reshape(-1, 3, 4)},
-            "vertex_bends": np.full((count + 1, 3, 4), UNTOUCHED),
+            **{"vertices": 2 * np.arange(count, dtype=np.uint32), "starts": starts, "stars": stars, "moved": moved},
+            **{"triangle_bends": triangle_words(rows), "vertex_bends": np.full((2 * count, 3, 2), UNWRITTEN)},
         },
         (
-            Expected("vertex_bends", "float", expected, MEAN_BOUND),
-            Expected("vertex_bends", "float", np.full(12, UNTOUCHED), first=12 * count),
+            halves("vertex_bends", vertex_numbers(means, moved[::2, 3]), MEAN_BOUND, length=6, period=12),
+            Expected("vertex_bends", "uint", np.full(6 * count, UNWRITTEN), first=6, length=6, period=12),
         ),
     )
 
 
-def _texels() -> Case:
-    """The first texels bend and are lit, the next are between corners that do not, the last are out of reach."""
-    rng, count, still, beyond = np.random.default_rng(8), 70, 3, 4
-    bends, texels = random_bends(rng, count + 3, still=3), count + still + beyond
-    corners = np.stack([rng.permutation(count), *rng.integers(0, count + 3, (2, count))], axis=1)
-    corners = np.vstack([corners, [count, count + 1, count + 2]])
-    places = np.concatenate([rng.permutation(count), np.full(still + beyond, count)])
-    texture, (shares, barycentrics) = random_texture(rng, texels), random_places(rng, texels)
-    vertices, light = random_light(rng, len(bends), dark=3)
-    halves_of = np.ascontiguousarray(texture.astype(np.float16).reshape(-1, 6, 4).swapaxes(0, 1))
-    words = halves_of.view(np.uint32).reshape(6, texels, 2)
-    exact = bend_texels(bends.astype(float), corners[places], barycentrics, texture.astype(float))
-    gains = light[vertices, 3].astype(float)
-    exact = brighten_texels(gains, corners[places], barycentrics, np.delete(exact, 11, axis=1))[:count]
-    written, lit = (partial(halves, "texel_channels", bound=bound) for bound in (TURNED_BOUND, LIT_BOUND))
-    kept = partial(Expected, "texel_channels", "uint")
+def _bent_texels() -> Case:
+    """Some bend and some do not, within reach and out of it; appearance is not written."""
+    count = 101
+    bent = bent_texels(np.random.default_rng(8), count)
     return Case(
         "turns of up to 60 degrees",
         "BendTexels",
-        groups((count + still, 64)),
-        {"texel_count": count + still, "splat_count": texels},
-        {
-            "reached": np.stack([np.arange(texels), places], axis=1)[: count + still].astype(np.uint32),
-            **{"texels": shares, "corners": corners.astype(np.uint32), "vertex_bends": bends.reshape(-1, 3, 4)},
-            **{"vertices": vertices, "moved": light, "texel_channels": words},
-        },
+        bent.groups,
+        bent.constants,
+        {**bent.buffers, "texel_channels": np.full((4, count, 2), UNWRITTEN)},
         (
-            written(exact[:, 0:4]),
-            kept(words[0, count:], first=2 * count),
-            written(exact[:, 4:8], first=2 * texels),
-            kept(words[1, count:], first=2 * (texels + count)),
-            written(exact[:, 8:10], first=4 * texels, period=2),
-            kept(words[2, :count, 1], first=4 * texels + 1, period=2),
-            kept(words[2, count:], first=2 * (2 * texels + count)),
-            lit(exact[:, 11:15], first=6 * texels),
-            kept(words[3, count:], first=2 * (3 * texels + count)),
-            kept(words[4:], first=8 * texels),
+            halves("texel_channels", bent.expected.reshape(-1, 3, 4).swapaxes(0, 1), bent.bound),
+            Expected("texel_channels", "uint", np.full(2 * count, UNWRITTEN), first=6 * count),
         ),
     )

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 import pywt
+from bent_cases import LIT_BOUND
 from dispatch import run
 from dwt_cases import taps, upsampling_bound
 from packed_splats import assert_halves
@@ -12,7 +13,9 @@ from stored import STORAGES, groups, store
 
 from mua.arrays import Array
 from mua.asset.tensors import Element
+from mua.channels import SH_C0
 from mua.gpu import Device
+from mua.kernels.expressions import MIDDLE
 from mua.kernels.inverse_dwt import (
     BATCH,
     add_static,
@@ -133,15 +136,17 @@ def test_zeros_before_the_centre_alone_are_left_out() -> None:
 def test_tiles_hold_each_valid_texel_once_and_no_tile_is_empty() -> None:
     size = 37
     texels = np.sort(np.random.default_rng(0).permutation(size * size)[:90])
-    tiles, rows = texel_tiles(texels, size)
-    assert rows[..., 1].any(axis=1).all()
+    reached = np.random.default_rng(1).random(len(texels)) < 0.3
+    tiles = texel_tiles(texels, size, reached)
+    assert tiles[:, 1:, 1].any(axis=1).all()
     found: dict[int, Any] = {}
-    for tile, lines in zip(tiles, rows, strict=True):
+    for (across, down), *lines in tiles.astype(int):
         for line, (first, mask) in enumerate(lines):
             columns = [c for c in range(TILE) if mask >> c & 1]
-            row = TILE * (int(tile) >> 16) + line
-            found |= {row * size + TILE * (int(tile) & 0xFFFF) + c: first + i for i, c in enumerate(columns)}
-    assert found == {texel: place for place, texel in enumerate(texels)}
+            at = (TILE * down + line) * size + TILE * across
+            found |= {at + c: (first + i, bool(mask >> TILE + c & 1)) for i, c in enumerate(columns)}
+    assert found == {texel: (place, reached[place]) for place, texel in enumerate(texels)}
+    np.testing.assert_array_equal(texel_tiles(texels, size)[..., 1] >> TILE, 0)
 
 
 @pytest.mark.parametrize("count", [0, 1, 7])
@@ -250,8 +255,9 @@ def check_texels(
     storage: Element = "f32",
     first_row: int = 0,
     coarser: int = 0,
+    lit: bool = False,
 ) -> None:
-    """The shader against the reference at `count` valid texels; nothing else is written."""
+    """The shader against the reference at `count` valid texels, some in reach of light; nothing else is written."""
     channels, side, _ = ll.shape
     packed = pack_planes(ll)
     ll = unpack_planes(packed)
@@ -259,7 +265,11 @@ def check_texels(
     rng = np.random.default_rng(count)
     texels = np.sort(rng.permutation(fine * fine)[:count])
     static_offset = store(rng.normal(size=(channels, count)), storage, rows=channels)
-    tiles, tile_rows = texel_tiles(texels, fine)
+    reached, gains = rng.random(count) < 0.7, rng.uniform(-1, 1, count).astype(np.float16)
+    before = np.full((first_row + rows + 1, count, BATCH), UNTOUCHED, np.float16)
+    if first_row:
+        before[first_row - 1, :, 3] = gains
+    tiles = texel_tiles(texels, fine, reached)
     filtered, delay = upsampling_taps(lo, levels, coarser)
     reach, factor = filtered.shape
     found = run(
@@ -268,14 +278,14 @@ def check_texels(
         "UpsampleTexels",
         (len(tiles), 1, rows),
         {
-            **{"ll": packed, "upsampling": filtered.astype(np.float32), "tiles": tiles, "tile_rows": tile_rows},
-            "static_offset": static_offset.words,
-            "texel_channels": np.full((first_row + rows + 1, count, BATCH), UNTOUCHED, np.float16),
+            **{"ll": packed, "upsampling": filtered.astype(np.float32), "tiles": tiles},
+            **{"static_offset": static_offset.words, "texel_channels": before},
         },
         static_offset_layout=static_offset.layout,
         **{"channels": channels, "size": side, "factor": factor, "reach": reach, "delay": delay},
         texel_count=count,
         first_row=first_row,
+        lit=int(lit),
     )["texel_channels"]
     written = slice(first_row, first_row + rows)
     halves = found[written].swapaxes(1, 2).reshape(BATCH * rows, count)
@@ -283,9 +293,12 @@ def check_texels(
     expected = upsample_texels(ll.astype(float), lo, levels, **kept)
     largest = np.abs(static_offset.values).max(initial=0)
     bound = upsampling_bound(filtered, np.abs(ll).max(initial=0), largest)
+    if lit:
+        expected[:3] += np.where(reached, gains * (expected[:3] + MIDDLE / SH_C0), 0)
+        bound = 2 * bound + LIT_BOUND
     assert_halves(halves[:channels], expected, bound)
     assert not halves[channels:].any()
-    assert np.all(np.delete(found, written, axis=0) == UNTOUCHED)
+    np.testing.assert_array_equal(np.delete(found, written, axis=0), np.delete(before, written, axis=0))
 
 
 @pytest.mark.parametrize("storage", STORAGES)
@@ -298,6 +311,14 @@ def test_texel_shader_equals_the_reference(
 ) -> None:
     ll = np.random.default_rng(side).normal(size=(channels, side, side)).astype(np.float32)
     check_texels(device, ll, taps("bior4.4")[0], levels, count=count, storage=storage, first_row=2)
+
+
+@pytest.mark.parametrize(("channels", "count"), [(12, 1), (12, 500), (3, 90)])
+def test_texel_shader_brightens_colours_in_reach_by_what_stands_beside_geometry(
+    device: Device, channels: int, count: int
+) -> None:
+    ll = np.random.default_rng(channels).normal(size=(channels, 7, 7)).astype(np.float32)
+    check_texels(device, ll, taps("bior4.4")[0], 2, count=count, first_row=3, lit=True)
 
 
 @pytest.mark.parametrize(("levels", "coarser"), [(1, 1), (2, 1), (2, 2)])

@@ -18,7 +18,7 @@ from mua.asset.read import read
 from mua.asset.tensors import Storage
 from mua.asset.write import write
 from mua.avatar.coarser import coarsest, texel_length
-from mua.kernels.expressions import by_vertex, reach_of
+from mua.kernels.expressions import by_vertex, pack_entries, reach_of
 from mua.kernels.inverse_dwt import texel_tiles, upsampling_taps
 from mua.kernels.splat_project import pack_texels
 from mua.player.buffers import NO_EXPRESSIONS
@@ -74,12 +74,11 @@ def assert_levels_alike(csharp: CSharp, program: Path, path: Path, avatar: Avata
     assert float(next(printed).split()[1]) == pytest.approx(texel_length(avatar), rel=1e-12)
     held = avatar.rig.expressions or NO_EXPRESSIONS
     targets = by_vertex(held.starts, held.vertices, held.changes)
-    for name in ("vertices", "starts", "expressions", "changes"):
-        values = getattr(targets, name)
-        assert_uploaded(printed, values.astype("<f4" if name == "changes" else "<u4"))
+    for values in (targets.vertices, targets.starts, *pack_entries(targets)):
+        assert_uploaded(printed, values)
     reach = partial(reach_of, targets.vertices, avatar.rig.mesh.faces)
-    reached = reach(avatar.rig.texels.triangles)
-    for values in (reached.corners, reached.vertices, reached.starts, reached.stars):
+    about = reach(avatar.rig.texels.triangles)
+    for values in (about.corners, about.vertices, about.starts, about.stars):
         assert_uploaded(printed, values)
     for number in range(coarsest(avatar) + 1):
         level = avatar.at_level(number)
@@ -99,11 +98,11 @@ def assert_levels_alike(csharp: CSharp, program: Path, path: Path, avatar: Avata
             numbers = np.frombuffer(bytes.fromhex(found), TYPES[name]).reshape(values.shape)
             np.testing.assert_array_equal(numbers, values, err_msg=f"{number} {name}")
         tiles, packed = (np.frombuffer(bytes.fromhex(next(printed).split(" ")[1]), "<u4") for _ in range(2))
-        np.testing.assert_array_equal(tiles, texel_tiles(texels.texels, texels.size)[0])
+        reached = reach(texels.triangles).texels
+        np.testing.assert_array_equal(tiles, texel_tiles(texels.texels, texels.size, reached).ravel())
         places = pack_texels(texels.triangles, texels.barycentrics, texels.one_sided).ravel().astype(np.int64)
         apart = np.abs(packed - places)  # means of barycentrics may round to another step
         assert number or not apart.any()
-        assert_uploaded(printed, reach(texels.triangles).texels)
         assert ((apart == 0) | (np.arange(len(apart)) % 2 == 1) & np.isin(apart, [1, 1 << 16, (1 << 16) + 1])).all()
     assert list(printed) == []
 

@@ -28,7 +28,7 @@ import { readComponents } from "../../python/mua/web/components.js";
 import { describe } from "../../python/mua/web/descriptor.js";
 import { Download } from "../../python/mua/web/download.js";
 import { orderOf } from "../../python/mua/web/early.js";
-import { byVertex, reachOf } from "../../python/mua/web/expressing.js";
+import { byVertex, halfOf, reachOf, shorts } from "../../python/mua/web/expressing.js";
 import { general, scientific, shortest } from "../../python/mua/web/format/numbers.js";
 import { read, readStage } from "../../python/mua/web/format/read.js";
 import { Stages } from "../../python/mua/web/format/stages.js";
@@ -105,8 +105,7 @@ function values(avatar, frames) {
     ground: groundHeight(avatar, clips[0]),
     shadow: shadowArea(list(avatar.bounds), -0.25),
     texels: list(texelWords(texels)),
-    tiles: list(texelTiles(texels).tiles),
-    rows: list(texelTiles(texels).rows),
+    tiles: list(texelTiles(texels)),
     upsampling: [0, 1, 2, 3].map((levels) => upsamplingTaps(wavelet.recLo, levels)),
     halved: [1, 2].map((coarser) => upsamplingTaps(wavelet.recLo, 2, coarser)),
     counts: new Levels(avatar).counts,
@@ -123,11 +122,13 @@ function expressed(avatar, frames) {
   const targets = byVertex(avatar.targets);
   let texture = textureOf(avatar);
   const textures = [texture, ...avatar.texels.levels.map(() => (texture = coarserTexture(avatar, texture)))];
-  const reach = textures.map(({ triangles }) => lists(reachOf(targets.vertices, template.faces, triangles)));
+  const packed = [targets.expressions, targets.changes.map(halfOf)].map((numbers) => list(shorts(numbers)));
+  const { triangles, ...reach } = reachOf(targets.vertices, template.faces);
+  const tiles = textures.map((texture) => list(texelTiles(texture, triangles)));
   const weights = frames.map((frame) => list(sample(skeleton, clips[0], frame, encoding.rate).expressions));
   const { rules } = avatar.targets;
   const shown = weights.map((given) => list(rules ? heldBack(rules, Float32Array.from(given)) : given));
-  return { names: expressions, targets: lists(targets), reach, weights, shown };
+  return { names: expressions, targets: lists(targets), packed, reach: lists(reach), tiles, weights, shown };
 }
 
 /** What plays after each change. */

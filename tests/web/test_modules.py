@@ -34,7 +34,7 @@ from mua.asset.write import encode
 from mua.avatar.camera import EYE_DISTANCE, orbit, perspective, sees, stereo
 from mua.avatar.coarser import REACH, at_level, coarsest, texel_length
 from mua.avatar.level_choice import splat_corners, texel_pixels
-from mua.kernels.expressions import by_vertex, reach_of
+from mua.kernels.expressions import by_vertex, pack_entries, reach_of
 from mua.kernels.inverse_dwt import texel_tiles, upsampling_taps
 from mua.kernels.splat_project import pack_texels
 from mua.player.draw import view_projection
@@ -156,8 +156,7 @@ def test_values_are_those_of_python(tmp_path: Path, change: Any, storage: Any) -
     )
     for name, expected in close.items():
         np.testing.assert_allclose(found[name], expected, rtol=EXACT, atol=EXACT, err_msg=name)
-    tiles, rows = texel_tiles(texels.texels, texels.size)
-    exact = {"frames": len(clip), "tiles": tiles, "rows": rows.ravel()}
+    exact = {"frames": len(clip), "tiles": texel_tiles(texels.texels, texels.size).ravel()}
     exact["texels"] = pack_texels(texels.triangles, texels.barycentrics, texels.one_sided).ravel()
     for name, expected in exact.items():
         np.testing.assert_array_equal(found[name], expected, err_msg=name)
@@ -244,11 +243,16 @@ def test_expressions_are_those_of_python(tmp_path: Path, storage: Any) -> None:
     targets = by_vertex(held.starts, held.vertices, held.changes)
     for name in ("vertices", "starts", "expressions", "changes"):
         np.testing.assert_array_equal(found["targets"][name], getattr(targets, name).ravel(), err_msg=name)
-    for number, level in enumerate(found["reach"]):
-        reach = reach_of(targets.vertices, avatar.rig.mesh.faces, at_level(avatar, number).rig.texels.triangles)
-        for name in ("vertices", "corners", "starts", "stars", "texels"):
-            np.testing.assert_array_equal(level[name], getattr(reach, name).ravel(), err_msg=name)
-    assert len(found["reach"]) == 3
+    for words, expected in zip(found["packed"], pack_entries(targets), strict=True):
+        np.testing.assert_array_equal(words, expected.ravel())
+    reach = reach_of(targets.vertices, avatar.rig.mesh.faces, np.zeros(0, int))
+    for name in ("vertices", "corners", "starts", "stars"):
+        np.testing.assert_array_equal(found["reach"][name], getattr(reach, name).ravel(), err_msg=name)
+    for number, tiles in enumerate(found["tiles"]):
+        texels = at_level(avatar, number).rig.texels
+        reached = reach_of(targets.vertices, avatar.rig.mesh.faces, texels.triangles).texels
+        np.testing.assert_array_equal(tiles, texel_tiles(texels.texels, texels.size, reached).ravel())
+    assert len(found["tiles"]) == 3
     clip = resample(avatar.clips[0], avatar.encoding.rate)
     assert clip.expressions is not None
     np.testing.assert_allclose(found["weights"], clip.expressions[FRAMES], rtol=0, atol=ROUNDED)

@@ -27,7 +27,7 @@ namespace Mua
         private GraphicsBuffer details;
         private GraphicsBuffer moved; // [V] and how much brighter colours become; 0 where no expression moves a vertex
         private GraphicsBuffer triangleBends; // [3 T]
-        private GraphicsBuffer vertexBends; // [3 B]
+        private GraphicsBuffer vertexBends; // [3 V], of those in reach
 
         /// <summary>
         /// InvalidOperationException where a kernel is missing or a buffer is too large for the device.
@@ -37,7 +37,7 @@ namespace Mua
             this.avatar = avatar;
             mlpMatmul = new MlpMatmul(resources.MlpMatmul);
             blendSubbands = new BlendSubbands(resources.BlendSubbands);
-            inverseDwt = new InverseDwt(resources.InverseDwt);
+            inverseDwt = new InverseDwt(resources.InverseDwt, resources.Expressions);
             expressions = new Expressions(resources.Expressions);
             try
             {
@@ -56,6 +56,10 @@ namespace Mua
             bool isGeometry = part < Parts / 2;
             BranchBuffers branch = isGeometry ? avatar.Geometry : avatar.Appearance;
             BranchLevel shown = isGeometry ? channels.Level.Geometry : channels.Level.Appearance;
+            if (part == 1)
+            {
+                Coarse(commands, channels);
+            }
             commands.BeginSample(AvatarStages.Texture);
             if (part % 2 == 0)
             {
@@ -63,17 +67,9 @@ namespace Mua
             }
             else
             {
-                Texels(commands, branch, shown, channels, isGeometry ? 0 : AppearanceRow);
+                Texels(commands, branch, shown, channels, isGeometry);
             }
             commands.EndSample(AvatarStages.Texture);
-            if (part == 1)
-            {
-                Coarse(commands, channels);
-            }
-            if (part == Parts - 1 && channels.IsExpressive)
-            {
-                Express(commands, channels);
-            }
         }
 
         public void Dispose()
@@ -87,11 +83,11 @@ namespace Mua
             layers = Math.Max(layers, Math.Max(Widest(avatar.Geometry.Mlp), Widest(avatar.Appearance.Mlp)));
             long bands = Math.Max(LargestBand(avatar.Geometry), LargestBand(avatar.Appearance));
             details = buffers.Structured("details", bands, sizeof(uint));
-            var still = new float[avatar.Expressions.VertexCount == 0 ? 4 : 4 * avatar.VertexCount];
-            moved = buffers.Structured("moved", still.Length / 4, 4 * sizeof(float));
-            moved.SetData(still);
-            triangleBends = buffers.Structured("triangle_bends", 3L * avatar.Expressions.TriangleCount, 4 * sizeof(float));
-            vertexBends = buffers.Structured("vertex_bends", 3L * avatar.Expressions.BentCount, 4 * sizeof(float));
+            int vertices = avatar.Expressions.VertexCount == 0 ? 1 : avatar.VertexCount;
+            moved = buffers.Structured("moved", vertices, 4 * sizeof(float));
+            moved.SetData(new float[4 * vertices]);
+            triangleBends = buffers.Structured("triangle_bends", 3L * avatar.Expressions.TriangleCount, 2 * sizeof(uint));
+            vertexBends = buffers.Structured("vertex_bends", 3L * vertices, 2 * sizeof(uint));
             for (int i = 0; i < 2; i++)
             {
                 activations[i] = buffers.Structured("activations", layers, sizeof(float));
@@ -113,22 +109,18 @@ namespace Mua
             return x;
         }
 
+        /// <summary>The mesh; vertices of expressions move, and those in reach bend.</summary>
         private void Coarse(CommandBuffer commands, ChannelSet channels)
         {
             commands.BeginSample(AvatarStages.CoarseMesh);
             GraphicsBuffer coefficients = Mlp(commands, avatar.CoarseMlp, channels.Components);
             mlpMatmul.Transposed(commands, avatar.Mesh, coefficients, channels.Mesh);
+            if (channels.IsExpressive)
+            {
+                expressions.Sum(commands, avatar.Expressions, channels.Weights, moved, channels.Mesh);
+                expressions.Bend(commands, avatar.Expressions, moved, channels.Mesh, triangleBends, vertexBends);
+            }
             commands.EndSample(AvatarStages.CoarseMesh);
-        }
-
-        /// <summary>Moves the vertices of expressions, and bends the texels in reach.</summary>
-        private void Express(CommandBuffer commands, ChannelSet channels)
-        {
-            commands.BeginSample(AvatarStages.Texture);
-            expressions.Sum(commands, avatar.Expressions, channels.Weights, moved, channels.Mesh);
-            expressions.Bend(commands, avatar.Expressions, moved, channels.Mesh, triangleBends, vertexBends);
-            expressions.BendTexels(commands, avatar.Expressions, channels.Level, moved, vertexBends, channels.TexelChannels);
-            commands.EndSample(AvatarStages.Texture);
         }
 
         /// <summary>Coefficients, LL, and level by level up to the finest details.</summary>
@@ -152,15 +144,23 @@ namespace Mua
 
         /// <summary>The finest level with details; then the valid texels to the channels.</summary>
         private void Texels(
-            CommandBuffer commands, BranchBuffers branch, BranchLevel shown, ChannelSet channels, int firstRow)
+            CommandBuffer commands, BranchBuffers branch, BranchLevel shown, ChannelSet channels, bool isGeometry)
         {
             int levels = branch.Details.Length;
             if (levels > 0)
             {
                 Synthesise(commands, branch, levels - 1);
             }
+            if (isGeometry && channels.IsExpressive)
+            {
+                inverseDwt.BendTexels(
+                    commands, channels.Level, shown, branch.Channels, Size(levels), textures[0], channels.TexelChannels,
+                    avatar.Faces, vertexBends);
+                return;
+            }
             inverseDwt.UpsampleTexels(
-                commands, channels.Level, shown, branch.Channels, Size(levels), textures[0], channels.TexelChannels, firstRow);
+                commands, channels.Level, shown, branch.Channels, Size(levels), textures[0], channels.TexelChannels,
+                isGeometry ? 0 : AppearanceRow, channels.IsExpressive);
         }
 
         /// <summary>One level with its details, to planes of twice the size.</summary>

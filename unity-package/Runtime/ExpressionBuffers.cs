@@ -17,7 +17,7 @@ namespace Mua
             vertices = add(new Upload(Field, targets.Vertices, sizeof(int)));
             starts = add(new Upload("expressions.starts", targets.Starts, sizeof(int)));
             expressions = add(new Upload(Field, targets.Expressions, sizeof(int)));
-            changes = add(new Upload("expressions.offsets", targets.Changes, 4 * sizeof(float)));
+            changes = add(new Upload("expressions.offsets", targets.Changes, 2 * sizeof(int)));
             corners = add(new Upload(Field, targets.Corners, sizeof(int)));
             bentVertices = add(new Upload(Field, targets.BentVertices, sizeof(int)));
             starStarts = add(new Upload(Field, targets.StarStarts, sizeof(int)));
@@ -39,16 +39,16 @@ namespace Mua
         /// <summary>[M + 1] into the entries.</summary>
         public GraphicsBuffer Starts => starts.Buffer;
 
-        /// <summary>[P] of each entry.</summary>
+        /// <summary>[P / 2] of each entry, in 16 bits.</summary>
         public GraphicsBuffer Expressions => expressions.Buffer;
 
-        /// <summary>[P] offset in metres, gain.</summary>
+        /// <summary>[P] offset in metres and gain, half floats.</summary>
         public GraphicsBuffer Changes => changes.Buffer;
 
-        /// <summary>[T, 3] of the triangles in reach, places among BentVertices.</summary>
+        /// <summary>[T, 3] vertices of the triangles in reach.</summary>
         public GraphicsBuffer Corners => corners.Buffer;
 
-        /// <summary>[B] of the template.</summary>
+        /// <summary>[B] all of these.</summary>
         public GraphicsBuffer BentVertices => bentVertices.Buffer;
 
         /// <summary>[B + 1] into Stars.</summary>

@@ -9,7 +9,7 @@ namespace Mua
     /// </summary>
     internal sealed class ExpressionTargets
     {
-        private readonly int[] places; // [F] among the triangles in reach; -1 for those out of it
+        private readonly bool[] isReached; // [F]
 
         /// <summary>Those of a file; empty where it has none.</summary>
         public ExpressionTargets(AvatarFile avatar)
@@ -19,9 +19,9 @@ namespace Mua
             int[] firsts = Firsts(held, avatar.Coarse.Mean.Shape[0]);
             Vertices = Moved(firsts);
             Starts = Append(Array.ConvertAll(Vertices, vertex => firsts[vertex]), count);
-            Expressions = new int[count];
-            Changes = new float[4 * count];
-            places = new int[avatar.Template.Faces.Shape[0]];
+            Expressions = new int[(count + 1) / 2];
+            Changes = new int[2 * count];
+            isReached = new bool[avatar.Template.Faces.Shape[0]];
             ReadOnlySpan<int> faces = avatar.Template.Faces.Integers;
             bool[] moves = new bool[firsts.Length - 1];
             foreach (int vertex in Vertices)
@@ -29,9 +29,10 @@ namespace Mua
                 moves[vertex] = true;
             }
             Corners = Reached(faces, Beside(faces, moves));
-            BentVertices = Place(Corners, moves.Length);
+            var places = (int[])Corners.Clone();
+            BentVertices = Place(places, moves.Length);
             StarStarts = new int[BentVertices.Length + 1];
-            Stars = Collect(Corners, StarStarts);
+            Stars = Collect(places, StarStarts);
             if (held != null)
             {
                 Fill(held, firsts);
@@ -44,13 +45,13 @@ namespace Mua
         /// <summary>[M + 1] into the entries, vertex by vertex.</summary>
         public int[] Starts { get; }
 
-        /// <summary>[P] of each entry, ascending for a vertex.</summary>
+        /// <summary>[P / 2] of each entry, ascending for a vertex, in 16 bits.</summary>
         public int[] Expressions { get; }
 
-        /// <summary>[P, 4] offset in metres, gain.</summary>
-        public float[] Changes { get; }
+        /// <summary>[P, 2] offset in metres and gain, as half floats.</summary>
+        public int[] Changes { get; }
 
-        /// <summary>[T, 3] of the triangles in reach, places among BentVertices.</summary>
+        /// <summary>[T, 3] vertices of the triangles in reach.</summary>
         public int[] Corners { get; }
 
         /// <summary>[B] of the template, ascending: all corners of these triangles.</summary>
@@ -62,26 +63,10 @@ namespace Mua
         /// <summary>[3 T] vertex by vertex, the places of the triangles about it.</summary>
         public int[] Stars { get; }
 
-        /// <summary>[K, 2] of a level: texels on these triangles, and their triangle's place among them.</summary>
-        public int[] Reached(DetailLevel level)
+        /// <summary>Whether expressions may bend a triangle, and the texels on it.</summary>
+        public bool IsReached(int triangle)
         {
-            int count = 0;
-            foreach (int triangle in level.Triangles)
-            {
-                count += places[triangle] >= 0 ? 1 : 0;
-            }
-            var reached = new int[2 * count];
-            int next = 0;
-            for (int texel = 0; texel < level.Count; texel++)
-            {
-                int place = places[level.Triangles[texel]];
-                if (place >= 0)
-                {
-                    reached[next++] = texel;
-                    reached[next++] = place;
-                }
-            }
-            return reached;
+            return isReached[triangle];
         }
 
         /// <summary>[V + 1] first entry of each vertex.</summary>
@@ -138,17 +123,16 @@ namespace Mua
             return beside;
         }
 
-        /// <summary>The corners of the faces that have one of these vertices, whose places it notes.</summary>
+        /// <summary>The corners of the faces that have one of these vertices, which it notes.</summary>
         private int[] Reached(ReadOnlySpan<int> faces, bool[] beside)
         {
             var reached = new int[faces.Length];
             int count = 0;
-            for (int face = 0; face < places.Length; face++)
+            for (int face = 0; face < isReached.Length; face++)
             {
                 ReadOnlySpan<int> own = faces.Slice(3 * face, 3);
-                bool isHeld = beside[own[0]] || beside[own[1]] || beside[own[2]];
-                places[face] = isHeld ? count : -1;
-                if (isHeld)
+                isReached[face] = beside[own[0]] || beside[own[1]] || beside[own[2]];
+                if (isReached[face])
                 {
                     own.CopyTo(reached.AsSpan(3 * count++));
                 }
@@ -211,14 +195,17 @@ namespace Mua
                 for (int entry = starts[expression]; entry < starts[expression + 1]; entry++)
                 {
                     int at = next[vertices[entry]]++;
-                    Expressions[at] = expression;
-                    for (int axis = 0; axis < 3; axis++)
-                    {
-                        Changes[4 * at + axis] = held.Offsets.Read(3 * entry + axis);
-                    }
-                    Changes[4 * at + 3] = held.Gains == null ? 0 : held.Gains.Read(entry);
+                    Expressions[at / 2] |= expression << 16 * (at % 2);
+                    float gain = held.Gains == null ? 0 : held.Gains.Read(entry);
+                    Changes[2 * at] = Pair(held.Offsets.Read(3 * entry), held.Offsets.Read(3 * entry + 1));
+                    Changes[2 * at + 1] = Pair(held.Offsets.Read(3 * entry + 2), gain);
                 }
             }
+        }
+
+        private static int Pair(float low, float high)
+        {
+            return Half.FromSingle(low) | Half.FromSingle(high) << 16;
         }
     }
 }

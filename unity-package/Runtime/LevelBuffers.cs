@@ -15,7 +15,7 @@ namespace Mua
     {
         private const int OneSided = 1 << 31; // beside the triangle
 
-        private readonly Upload tiles, tileRows, texels, reached;
+        private readonly Upload tiles, texels;
 
         /// <param name="level">What it is made of.</param>
         /// <param name="targets">What may bend its texels.</param>
@@ -25,13 +25,10 @@ namespace Mua
             Number = level.Number;
             Size = level.Size;
             SplatCount = level.Count;
-            var held = new TexelTiles(level.Texels, level.Size);
-            tiles = add(new Upload("texels.texels", held.Tiles, sizeof(int)));
-            tileRows = add(new Upload("texels.texels", held.Rows, 2 * sizeof(int)));
+            var held = new TexelTiles(level.Texels, level.Size, Array.ConvertAll(level.Triangles, targets.IsReached));
+            TileCount = held.Count;
+            tiles = add(new Upload("texels.texels", held.Rows, 2 * sizeof(int)));
             texels = add(new Upload("texels", Places(level), 2 * sizeof(int)));
-            int[] bent = targets.Reached(level);
-            reached = add(new Upload("expressions.vertices", bent, 2 * sizeof(int)));
-            ReachedCount = bent.Length / 2;
         }
 
         /// <summary>0 is the finest.</summary>
@@ -47,20 +44,13 @@ namespace Mua
         public BranchLevel Appearance { get; set; }
 
         /// <summary>How many tiles of the texture hold a valid texel.</summary>
-        public int TileCount => tiles.Count;
+        public int TileCount { get; }
 
+        /// <summary>[T, 17, 2] as texel_tiles of python/mua/kernels/inverse_dwt.py has them.</summary>
         public GraphicsBuffer Tiles => tiles.Buffer;
-
-        public GraphicsBuffer TileRows => tileRows.Buffer;
 
         /// <summary>[N] triangle and whether it is one-sided, and its first two barycentrics in 16 bits each.</summary>
         public GraphicsBuffer Texels => texels.Buffer;
-
-        /// <summary>How many texels expressions may bend.</summary>
-        public int ReachedCount { get; }
-
-        /// <summary>[K, 2] these texels, and their triangle's place among those in reach.</summary>
-        public GraphicsBuffer Reached => reached.Buffer;
 
         /// <summary>[N, 2] as pack_texels of python/mua/kernels/splat_project.py has them.</summary>
         private static int[] Places(DetailLevel level)

@@ -9,37 +9,37 @@ namespace Mua
         /// <summary>Texels along a side of a tile.</summary>
         public const int Side = 16;
 
-        /// <summary>One row of a tile: two words of the kernel.</summary>
+        /// <summary>One row of a tile, after the tile's own column and row: two words of the kernel.</summary>
         public struct Row
         {
             public int First; // valid texel of the row
-            public int Columns; // the valid ones as bits
+            public int Columns; // the valid ones as bits, from bit 16 on those in reach of expressions
         }
 
         /// <param name="texels">[N] row * size + column, ascending.</param>
         /// <param name="size">Texels along a side of the texture.</param>
-        public TexelTiles(int[] texels, int size)
+        /// <param name="isReached">[N] those that expressions may change.</param>
+        public TexelTiles(int[] texels, int size, bool[] isReached)
         {
             int across = (size + Side - 1) / Side;
             int[] places = Places(texels, size, across);
-            Rows = new Row[Side * Tiles.Length];
             for (int i = 0; i < texels.Length; i++)
             {
                 int row = texels[i] / size, column = texels[i] % size;
-                int at = Side * places[row / Side * across + column / Side] + row % Side;
+                int at = (Side + 1) * places[row / Side * across + column / Side] + 1 + row % Side;
                 if (Rows[at].Columns == 0)
                 {
                     Rows[at].First = i;
                 }
-                Rows[at].Columns |= 1 << column % Side;
+                Rows[at].Columns |= (isReached[i] ? 1 << Side | 1 : 1) << column % Side;
             }
         }
 
-        /// <summary>[T] row * 65536 + column of a tile, ascending.</summary>
-        public int[] Tiles { get; private set; }
+        /// <summary>T.</summary>
+        public int Count => Rows.Length / (Side + 1);
 
-        /// <summary>[T, 16].</summary>
-        public Row[] Rows { get; }
+        /// <summary>[T, 17], the tiles ascending.</summary>
+        public Row[] Rows { get; private set; }
 
         /// <summary>Lists the tiles; returns where in the list each of the texture's is.</summary>
         private int[] Places(int[] texels, int size, int across)
@@ -52,14 +52,14 @@ namespace Mua
                 count += held[tile] ? 0 : 1;
                 held[tile] = true;
             }
-            Tiles = new int[count];
+            Rows = new Row[(Side + 1) * count];
             var places = new int[held.Length];
             int next = 0;
             for (int tile = 0; tile < held.Length; tile++)
             {
                 if (held[tile])
                 {
-                    Tiles[next] = (tile / across << 16) + tile % across;
+                    Rows[(Side + 1) * next] = new Row { First = tile % across, Columns = tile / across };
                     places[tile] = next++;
                 }
             }

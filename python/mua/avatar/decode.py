@@ -169,10 +169,10 @@ def express(
     moved = expressions.displacement(weights, vertices=len(canonical))
     gains = expressions.brightening(weights, vertices=len(canonical))
     reach = reach_of(expressions.moved(weights), rig.mesh.faces, texels.triangles)
-    at, about = reach.texels[:, 0], reach.vertices
-    corners = reach.corners[reach.texels[:, 1]]
+    at, about = np.flatnonzero(reach.texels), reach.vertices
+    corners = np.searchsorted(about, rig.mesh.faces[texels.triangles[at]])
     barycentrics = texels.barycentrics[at].astype(canonical.dtype, copy=False)
-    bends = bend_vertices(bend_triangles(canonical[about], moved[about], reach.corners), reach.starts, reach.stars)
+    bends = bend_vertices(bend_triangles(canonical, moved, reach.corners), reach.starts, reach.stars)
     expressed = texture.copy(order="K")
     expressed[at] = bend_texels(bends, corners, barycentrics, texture[at])
     expressed[at] = brighten_texels(gains[about], corners, barycentrics, expressed[at])

@@ -16,7 +16,7 @@ from mua.avatar.camera import Camera, orbit
 from mua.avatar.coarser import coarsest, texel_length
 from mua.avatar.decode_turns import ALONE
 from mua.avatar.level_choice import LARGEST_TEXEL
-from mua.bench.work import EXPRESSING, NOTHING, Work, by_kernel
+from mua.bench.work import NOTHING, Work, by_kernel, gathered, total
 from mua.errors import InputError
 from mua.gpu import Bound, Device
 from mua.motion.facing import front_of
@@ -57,6 +57,14 @@ class Part:
 
 
 @dataclass(frozen=True)
+class Face:
+    """What a decode does besides where expressions move."""
+
+    work: Work
+    dispatches: int
+
+
+@dataclass(frozen=True)
 class LevelCounts:
     """One level of detail."""
 
@@ -81,7 +89,7 @@ class Counts:
     rest: int  # dispatches of a frame in which only the camera moves
     drawn: tuple[Drawn, ...]
     levels: tuple[LevelCounts, ...] = ()  # the finest first
-    face: Part | None = None  # what a decode does besides where all expressions move; None: the avatar has none
+    face: Face | None = None  # where all expressions move; None: the avatar has none
 
     @property
     def kernels(self) -> dict[str, Work]:
@@ -201,10 +209,16 @@ def _level(device: Device, frame: SplatFrame[AvatarFrame], clip: Clip, level: in
     )
 
 
-def _face(device: Device, avatar: AvatarFrame, clip: Clip, share: float) -> Part:
-    """What moves a face, at the finest level."""
-    parts = _decode_parts(device, avatar, clip, expressions=np.ones(len(avatar.avatar.avatar.expressions)))
-    return _part([bound for part in parts for bound in part if bound.kernel in EXPRESSING], share)
+def _face(device: Device, avatar: AvatarFrame, clip: Clip, share: float) -> Face:
+    """What a face in which all expressions move costs beside a decode of the finest level."""
+    weights, held = np.ones(len(avatar.avatar.avatar.expressions)), avatar.avatar.expressions
+    with_face, without = (
+        [bound for part in _decode_parts(device, avatar, clip, expressions=given) for bound in part]
+        for given in (weights, None)
+    )
+    work = gathered(held.bent_count, held.triangle_count, avatar.avatar.level(0).reached)
+    work += total(with_face, share=share) - total(without, share=share)
+    return Face(work, len(with_face) - len(without))
 
 
 def _decode_parts(

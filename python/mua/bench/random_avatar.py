@@ -22,6 +22,7 @@ from mua.pose.clip import Clip
 from mua.pose.encoding import Components, Normalization, PoseEncoding
 from mua.pose.skeleton import Skeleton
 from mua.rig.character import Mesh
+from mua.rig.expressions import Expressions
 from mua.rig.rig import Rig
 from mua.rig.texel_map import build_texel_map
 from mua.rig.triangulate import triangulate
@@ -30,6 +31,11 @@ from mua.student.settings import Ranks, Settings
 HEIGHT, RADIUS = 1.7, 0.18  # metres
 HOLE = 0.02  # share of the radius left at both ends, so that no triangle has zero area
 RINGS, SPOKES = 102, 54  # 5,508 vertices; the template of the paper's family has 5,514
+# A face as large as that of a Ready Player Me figure: 66 expressions of 40,094 entries at 2,101 vertices.
+FACE_RINGS = 39  # all of whose vertices some expression moves, at the upper end
+FACE = 1 / 6  # share of the texels that are in reach of these
+ENTRIES = np.linspace(17, 1198, 66).astype(int)  # vertices of each expression
+MOVE, LIGHT = 0.003, 0.1  # metres and a share of colours, standard deviations
 JOINTS = 54  # all of them encoded, as in the family's released character
 VALID = 300_000 / 768**2  # share of the texels that are valid (paper, Animatable Coarse Geometry)
 WAVELET = "bior4.4"
@@ -43,7 +49,7 @@ OFFSET, TURN, SPREAD, LOGIT, SHADE = 0.003, 0.05, 0.1, 0.3, 0.2  # standard devi
 def random_avatar(settings: Settings) -> Avatar:
     """An untrained avatar, as large and as visible as a trained one; equal arguments give equal avatars."""
     rng = np.random.default_rng(0)
-    rig = _rig(settings.texels)
+    rig = replace(_rig(settings.texels), expressions=_face(np.random.default_rng(1)))
     vertices = rig.mesh.vertices.astype(np.float32)
     scale = np.log(0.6 * np.sqrt(2 * np.pi * RADIUS * HEIGHT / len(rig.texels.texels)))
     geometry_means = [0.0] * 3 + [1.0, 0.0, 0.0, 0.0] + [scale] * 3 + [2.0]
@@ -101,7 +107,8 @@ def _tube() -> Mesh:
     """Rings at equal distances along a profile of half a circle, a straight line and half a circle."""
     quarter = np.pi / 2 * RADIUS
     length = HEIGHT - 2 * RADIUS + 2 * quarter
-    along = np.linspace(HOLE * RADIUS, length - HOLE * RADIUS, RINGS)
+    shares = np.interp(np.arange(RINGS), [0, RINGS - 2 - FACE_RINGS, RINGS - 1], [0, 1 - FACE, 1])  # closer in the face
+    along = HOLE * RADIUS + shares * (length - 2 * HOLE * RADIUS)
     inwards = np.minimum(along, length - along)  # distance from the nearer end
     turn = np.minimum(inwards / RADIUS, np.pi / 2)
     rise = RADIUS * (1 - np.cos(turn)) + np.maximum(inwards - quarter, 0)
@@ -111,7 +118,7 @@ def _tube() -> Mesh:
     radius = RADIUS * np.sin(turn)[:, None]
     vertices = np.stack([radius * np.sin(angle), height, radius * np.cos(angle)], axis=-1).reshape(-1, 3)
     margin = (1 - np.sqrt(VALID)) / 2
-    columns, rows = np.meshgrid(np.linspace(margin, 1 - margin, SPOKES + 1), np.linspace(1 - margin, margin, RINGS))
+    columns, rows = np.meshgrid(np.linspace(margin, 1 - margin, SPOKES + 1), 1 - margin - shares * (1 - 2 * margin))
     ring, spoke = (i.ravel() for i in np.indices((RINGS - 1, SPOKES)))
     quads = np.stack([(ring, spoke), (ring, spoke + 1), (ring + 1, spoke + 1), (ring + 1, spoke)])  # [4, 2, quads]
     triangles = np.concatenate([quads[[0, 1, 2]], quads[[0, 2, 3]]], axis=2).transpose(2, 0, 1)  # [F, 3, 2]
@@ -120,6 +127,21 @@ def _tube() -> Mesh:
         faces=(triangles[..., 0] * SPOKES + triangles[..., 1] % SPOKES).astype(np.int32),
         uv=np.stack([columns, rows], axis=-1).reshape(-1, 2),
         uv_faces=(triangles[..., 0] * (SPOKES + 1) + triangles[..., 1]).astype(np.int32),
+    )
+
+
+def _face(rng: np.random.Generator) -> Expressions:
+    """Each expression moves and lights vertices that follow one another in the rings."""
+    first = (RINGS - FACE_RINGS) * SPOKES
+    begins = rng.integers(first, RINGS * SPOKES - ENTRIES, endpoint=True)
+    begins[[0, -1, -2]] = first, RINGS * SPOKES - ENTRIES[-1], first
+    count = int(ENTRIES.sum())
+    return Expressions(
+        names=tuple(f"expression {number}" for number in range(len(ENTRIES))),
+        starts=np.concatenate([[0], np.cumsum(ENTRIES)]).astype(np.int32),
+        vertices=np.concatenate([np.arange(b, b + n) for b, n in zip(begins, ENTRIES, strict=True)]).astype(np.int32),
+        offsets=_normal(rng, (count, 3), MOVE),
+        gains=_normal(rng, (count,), LIGHT),
     )
 
 

@@ -17,6 +17,7 @@ HALF = 2
 DUAL_QUATERNION = 8 * FLOAT  # bytes
 SPLAT, CENTRE = 32, 16  # bytes written for a splat that some eye sees, and for one that none sees
 KEY = 2  # bytes
+BEND = 12 * HALF  # bytes of a bent triangle or vertex
 INFLUENCES = 8
 SORT_GROUP = 2048  # keys that share one histogram
 DIGITS = 256
@@ -34,8 +35,9 @@ SKIN += ACTIVATIONS  # 18: the barycentric point and the offset
 FRAME = 6 + 6 + 3 + 5 + 6 + 6 + 3 + 9  # two edges, length, axis, shear, height's vector, its length, axis, normal
 # Before; frames; in-plane map, its rotation; R, P; quaternion; all times the area.
 BEND_TRIANGLE = 9 + 2 * FRAME + 6 + 7 + 3 * (6 + 8) + 10 + 6 * 5 + 45 + 12
-ADD_BEND = 8 + 12  # on which side the quaternion lies; all of a row
-BEND_TEXEL = 3 * (7 + 2 * 11) + 2 * UNIT_QUATERNION + 30 + 45 + 3 * (6 + 4)  # corners; axes, P of them, logarithms
+ADD_BEND = 8 + 1 + 10 + 12  # on which side the quaternion lies; area; all of a row times it, and added
+BEND_TEXEL = 3 * (11 + 2) + 2 * (8 + 12)  # shares of the corners, which of them bend and count; their sum
+BEND_TEXEL += 2 * UNIT_QUATERNION + 30 + 45 + 3 * (6 + 4)  # axes, P of them, logarithms
 BEND_TEXEL += 30 + QUATERNION_PRODUCT + 3 * 3  # offset, rotation, colour
 PROJECT_EYE = (
     24 + 15 + 24 + 30 + 15 + 18 + 6 + 25 + 12 + 30 + 27
@@ -52,6 +54,9 @@ class Work:
 
     def __add__(self, other: "Work") -> "Work":
         return Work(self.bytes + other.bytes, self.flops + other.flops)
+
+    def __sub__(self, other: "Work") -> "Work":
+        return Work(self.bytes - other.bytes, self.flops - other.flops)
 
 
 NOTHING = Work(0, 0)
@@ -109,7 +114,7 @@ def upsample_texels(dispatch: Bound, _: float) -> Work:
     """
     channels, size, texels = _constants(dispatch, "channels", "size", "texel_count")
     reach, factor = _constants(dispatch, "reach", "factor")
-    moved = _bound(dispatch, "static_offset", "tiles", "tile_rows", "upsampling") + channels * plane_bytes(size)
+    moved = _bound(dispatch, "static_offset", "tiles", "upsampling") + channels * plane_bytes(size)
     moved += HALF * BATCH * _groups(channels, BATCH) * texels
     return Work(moved, channels * texels * (2 * reach + 2 * reach // factor + 1))
 
@@ -154,28 +159,30 @@ def sum_targets(dispatch: Bound, _: float) -> Work:
     """Entries and weights read; mesh read and written, and how far it moves written, at each vertex that may move."""
     (vertices,) = _constants(dispatch, "vertex_count")
     moved = _bound(dispatch, "vertices", "starts", "expressions", "changes", "weights") + (2 * 3 + 4) * FLOAT * vertices
-    return Work(moved, 2 * dispatch.sizes["changes"] // FLOAT + 3 * vertices)
+    return Work(moved, 2 * dispatch.sizes["changes"] // HALF + 3 * vertices)
 
 
 def bend_triangles(dispatch: Bound, _: float) -> Work:
-    """Corners, and how far each went, gathered and counted once; quaternion and stretch of each triangle written."""
+    """Corners read; quaternion and stretch of each triangle written."""
     (triangles,) = _constants(dispatch, "triangle_count")
-    moved = _bound(dispatch, "vertices", "corners", "triangle_bends") + (3 + 4) * dispatch.sizes["vertices"]
-    return Work(moved, triangles * BEND_TRIANGLE)
+    return Work(_bound(dispatch, "corners", "triangle_bends"), triangles * BEND_TRIANGLE)
 
 
 def bend_vertices(dispatch: Bound, _: float) -> Work:
-    """Triangles about each vertex in reach read, gathered and counted once; their mean written."""
+    """Triangles about each vertex in reach, gathered and counted once, and its gain read; their mean written."""
     (vertices,) = _constants(dispatch, "vertex_count")
-    moved = _bound(dispatch, "starts", "stars", "triangle_bends", "vertex_bends")
+    moved = _bound(dispatch, "vertices", "starts", "stars", "triangle_bends") + (4 * FLOAT + BEND) * vertices
     return Work(moved, dispatch.sizes["stars"] // UINT * ADD_BEND + vertices * 12)
 
 
-def bend_texels(dispatch: Bound, _: float) -> Work:
-    """Place, corners' bends, gathered, and 16 half floats of each texel in reach read; these are written too."""
-    (texels,) = _constants(dispatch, "texel_count")
-    moved = _bound(dispatch, "reached", "corners", "vertices", "vertex_bends") + 4 * dispatch.sizes["vertices"]
-    return Work(moved + texels * (2 * UINT + 2 * 4 * BATCH * HALF), texels * BEND_TEXEL)
+def gathered(vertices: int, triangles: int, texels: int) -> Work:
+    """What a face takes beside its dispatches' own buffers, of what is in reach, gathers counted once.
+
+    Read are mesh and moves of vertices, before their triangles bend; then bends of vertices, corners of triangles,
+    places of texels and the last half floats of their geometry. Operations are those that bend and light the texels.
+    """
+    moved = ((3 + 4) * FLOAT + BEND) * vertices + 3 * UINT * triangles
+    return Work(moved + (2 * UINT + BATCH * HALF) * texels, texels * BEND_TEXEL)
 
 
 Formula = Callable[[Bound, float], Work]  # work of a dispatch, given the share of the splats that some eye sees
@@ -191,7 +198,7 @@ EXPRESSING: dict[str, Formula] = {  # beside these, where a face moves
     "SumTargets": sum_targets,
     "BendTriangles": bend_triangles,
     "BendVertices": bend_vertices,
-    "BendTexels": bend_texels,
+    "BendTexels": upsample_texels,  # of geometry; `gathered` has what is more
 }
 POSING: dict[str, Formula] = {  # in every displayed frame: from there to sorted splats
     "BlendVertices": blend_vertices,

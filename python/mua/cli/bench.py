@@ -25,7 +25,7 @@ from mua.files.inputs import require_file
 from mua.student.settings import PRESETS, preset
 
 if TYPE_CHECKING:  # loads wgpu
-    from mua.bench.counts import Counts, Part
+    from mua.bench.counts import Counts, Face, Part
     from mua.bench.measure import Measured, Timing
     from mua.bench.work import Work
     from mua.gpu import Device
@@ -128,7 +128,7 @@ def _count(device: "Device", path: Path, output: Path | None) -> None:
         printer().print(shown)
 
 
-def _share(face: "Part", decode: "Part") -> tuple[str, ...]:
+def _share(face: "Face", decode: "Part") -> tuple[str, ...]:
     """What expressions add to a decode, as shares of it."""
     moved, done = (f"+{own / all:.1%}" for own, all in zip(astuple(face.work), astuple(decode.work), strict=True))
     return "expressions, to decode", moved, done, str(face.dispatches)

@@ -102,7 +102,7 @@ class _Splats:
         assert expressions is not None
         weights = np.zeros(len(expressions), np.float32)
         weights[number] = 1
-        some = reach_of(expressions.moved(weights), self._rig.mesh.faces, texels.triangles).texels[:, 0]
+        some = np.flatnonzero(reach_of(expressions.moved(weights), self._rig.mesh.faces, texels.triangles).texels)
         rig = replace(self._rig, texels=texels.some(some))
         mesh, texture = express(rig, self._still.mesh, texture=self._still.texture[some], weights=weights)
         posed = replace(pose_splats(rig, mesh, texture=texture, pose=self._pose), bounds=self._posed.bounds)

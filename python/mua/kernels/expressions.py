@@ -19,6 +19,7 @@ MOST_STRETCH = 20.0  # of an axis, and its inverse the least
 STILL = np.array([1, 0, 0, 0, 1, 1, 1, 0, 0, 0, 1, 0])  # the row of what does not bend
 CONSTANT = slice(APPEARANCE.start, APPEARANCE.start + 3)  # colours that are the same from everywhere
 MIDDLE = 0.5  # of colours, where their channels are 0
+LARGEST = np.finfo(np.float16).max
 SYMMETRIC = np.array([[4, 7, 8], [7, 5, 9], [8, 9, 6]])  # entries of P in a row
 
 
@@ -49,16 +50,21 @@ def by_vertex(
     )
 
 
+def pack_entries(targets: Targets) -> tuple[Array, Array]:
+    """Words that the shader takes: [ceil(P / 2)] expressions of 16 bits, and [P, 2] changes as half floats."""
+    numbers = np.append(targets.expressions, np.zeros(len(targets.expressions) % 2)).astype("<u2")
+    return numbers.view("<u4"), np.clip(targets.changes, -LARGEST, LARGEST).astype("<f2").view("<u4")
+
+
 @dataclass(frozen=True, eq=False)
 class Reach:
     """What the vertices of expressions may bend: triangles about them and about their neighbours."""
 
-    triangles: Array  # [T] int32 into faces, ascending
-    vertices: Array  # [B] int32 of the mesh, ascending: all of their corners
-    corners: Array  # [T, 3] int32, places among these vertices
+    corners: Array  # [T, 3] int32 of the mesh, in the order of the faces
+    vertices: Array  # [B] int32, ascending: all of these
     starts: Array  # [B + 1] int32 into the stars
     stars: Array  # [3 T] int32: vertex by vertex, the places of the triangles about it
-    texels: Array  # [K, 2] int32, ascending: texels on the triangles, and the places of these
+    texels: Array  # [N] bool: whether each lies on one of the triangles
 
 
 def reach_of(
@@ -69,16 +75,12 @@ def reach_of(
     """The triangles that have a corner beside the vertices, and the texels on these."""
     beside = faces[np.isin(faces, vertices).any(axis=1)]
     held = np.asarray(np.isin(faces, beside).any(axis=1))
-    bent, corners = np.unique(faces[held], return_inverse=True)
-    corners = corners.reshape(-1, 3).astype(np.int32)
-    texels = np.flatnonzero(held[triangles])
-    places = (np.cumsum(held) - 1)[triangles[texels]]
+    bent, places = np.unique(faces[held], return_inverse=True)
     return Reach(
-        np.flatnonzero(held).astype(np.int32),
+        faces[held].astype(np.int32),
         bent.astype(np.int32),
-        corners,
-        *stars_of(corners, len(bent)),
-        np.stack([texels, places], axis=1).astype(np.int32),
+        *stars_of(places.reshape(-1, 3), len(bent)),
+        held[triangles],
     )
 
 
@@ -98,7 +100,7 @@ def bend_triangles(
     moved: Array,  # [V, 3] how far they move
     faces: Array,  # [T, 3] into vertices
 ) -> Array:
-    """Rows [T, 12]: q(R), P as xx, yy, zz, xy, xz, yz, and 1, all of them times the area; 1 where a corner moves.
+    """Rows [T, 12]: q(R), P as xx, yy, zz, xy, xz, yz, the root of the area, and 1 where a corner moves.
 
     The area is the smaller one of before and after, and 0 where a triangle has no frame.
     """
@@ -109,7 +111,7 @@ def bend_triangles(
     at = np.flatnonzero(framed & moves)
     turn, bends[at, 4:10] = _polar(before.at(at), after.at(at))
     bends[at, 0:4] = rotation.from_matrix(turn)
-    bends *= np.where(framed, area, 0)[:, None]
+    bends[:, 10] = np.sqrt(np.where(framed, area, 0))
     bends[:, 11] = moves
     return bends
 
@@ -121,10 +123,12 @@ def bend_vertices(
 ) -> Array:
     """Rows [B, 12]: means of q(R) and P by area over a vertex' triangles; 1 where that is not 0; 1 where one moves."""
     sums = np.zeros((len(starts) - 1, 12), bends.dtype)
+    weighed = bends * bends[:, 10:11] ** 2
+    weighed[:, 10], weighed[:, 11] = bends[:, 10] ** 2, bends[:, 11]
     counts = np.diff(starts)
     for place in range(counts.max(initial=0)):
         at = np.flatnonzero(counts > place)
-        row = bends[stars[starts[at] + place]]
+        row = weighed[stars[starts[at] + place]]
         row[:, 0:4] *= _same_side(sums[at, 0:4], row[:, 0:4])
         sums[at] += row
     moves, area = sums[:, 11] > 0, sums[:, 10].copy()

@@ -69,7 +69,8 @@ def pack_channels(
 ) -> Array:
     """Channels as the kernels hold them, [6, N, 2] uint32: geometry in three rows of four half floats, then appearance.
 
-    Beyond the largest half float, values are held there; the twelfth of geometry is zero.
+    Beyond the largest half float, values are held there; the twelfth of geometry is zero, or how much brighter
+    expressions made the colours.
     """
     padded = np.insert(texture, APPEARANCE.start, 0, axis=1)
     largest = np.finfo(np.float16).max
@@ -153,22 +154,25 @@ def upsampling_taps(
 def texel_tiles(
     texels: Array,  # [N] row * size + column, ascending
     size: int,
-) -> tuple[Array, Array]:
-    """Tiles of 16 x 16 texels that hold a valid one, as the shader takes them.
+    reached: Array | None = None,  # [N] bool: those that expressions may change; None: none
+) -> Array:
+    """Tiles of 16 x 16 texels that hold a valid one, as the shader takes them, [T, 17, 2].
 
-    [T] row << 16 | column of a tile, ascending; and [T, 16, 2] of each of its rows the place in `texels` of the first
-    that it holds, and its columns as bits.
+    Column and row of a tile, in tiles; and of each of its rows the place in `texels` of the first that it holds, and
+    its columns as bits, from bit 16 on those that are reached.
     """
     rows, columns = np.divmod(texels, size)
-    numbers = (rows // TILE << 16) + columns // TILE
-    tiles, places = np.unique(numbers, return_inverse=True)
-    lines, firsts, line_of = np.unique(places * TILE + rows % TILE, return_index=True, return_inverse=True)
-    runs = np.zeros((len(tiles) * TILE, 2), np.uint32)
-    runs[lines, 0] = firsts
-    held = np.zeros(len(lines), np.uint32)
-    np.bitwise_or.at(held, line_of, np.uint32(1) << (columns % TILE).astype(np.uint32))
-    runs[lines, 1] = held
-    return tiles.astype(np.uint32), runs.reshape(-1, TILE, 2)
+    numbers, places = np.unique((rows // TILE << 16) + columns // TILE, return_inverse=True)
+    lines, firsts, line_of = np.unique(places * (TILE + 1) + 1 + rows % TILE, return_index=True, return_inverse=True)
+    tiles = np.zeros((len(numbers) * (TILE + 1), 2), np.uint32)
+    tiles[:: TILE + 1] = np.stack([numbers & 0xFFFF, numbers >> 16], axis=1)
+    tiles[lines, 0] = firsts
+    held, bits = np.zeros(len(lines), np.uint32), np.uint32(1) << (columns % TILE).astype(np.uint32)
+    if reached is not None:
+        bits |= bits << np.uint32(TILE) * reached.astype(np.uint32)
+    np.bitwise_or.at(held, line_of, bits)
+    tiles[lines, 1] = held
+    return tiles.reshape(-1, TILE + 1, 2)
 
 
 def _upsample(

@@ -17,7 +17,7 @@ from mua.avatar.model import Model
 from mua.errors import InputError
 from mua.gpu import Buffer, Device
 from mua.gpu.stored import Layout, upload_words
-from mua.kernels.expressions import Targets, by_vertex, reach_of
+from mua.kernels.expressions import Targets, by_vertex, pack_entries, reach_of
 from mua.kernels.inverse_dwt import texel_tiles, upsampling_taps, whole_words
 from mua.kernels.splat_project import pack_texels
 from mua.rig.expressions import Expressions
@@ -109,12 +109,12 @@ class ExpressionBuffers:
 
     vertices: Buffer  # [M]
     starts: Buffer  # [M + 1]
-    expressions: Buffer  # [P]
-    changes: Buffer  # [P, 4]
+    expressions: Buffer  # [P] of 16 bits
+    changes: Buffer  # [P, 4] half floats
     vertex_count: int  # M
-    corners: Buffer  # [T, 3] of the triangles in reach of the vertices
+    corners: Buffer  # [T, 3] vertices of the triangles in reach of these
     triangle_count: int  # T
-    bent_vertices: Buffer  # [B] of these
+    bent_vertices: Buffer  # [B] all of them
     star_starts: Buffer  # [B + 1]
     stars: Buffer  # [3 T]
     bent_count: int  # B
@@ -130,9 +130,7 @@ class LevelBuffers:
     places: RigPlaces
     tile_count: int
     tiles: Buffer  # from mua.kernels.inverse_dwt.texel_tiles
-    tile_rows: Buffer
-    reached: Buffer  # [K, 2] texels that expressions may bend, and the place of their triangle
-    reached_count: int
+    reached: int  # how many texels expressions may change
     geometry: BranchLevel
     appearance: BranchLevel
 
@@ -152,14 +150,15 @@ def upload_rig(device: Device, rig: Rig) -> RigBuffers:
 def upload_targets(device: Device, targets: Targets, faces: Array) -> ExpressionBuffers:
     """Upload expressions. Errors: InputError where a buffer is larger than the device can bind or hold."""
     reach = reach_of(targets.vertices, faces, np.zeros(0, np.int32))
+    expressions, changes = pack_entries(targets)
     return ExpressionBuffers(
         vertices=device.buffer(targets.vertices.astype(np.uint32), name="expressions.vertices"),
         starts=device.buffer(targets.starts.astype(np.uint32), name="expressions.starts"),
-        expressions=device.buffer(targets.expressions.astype(np.uint32), name="expressions.vertices"),
-        changes=device.buffer(targets.changes.astype(np.float32), name="expressions.offsets"),
+        expressions=device.buffer(expressions, name="expressions.vertices"),
+        changes=device.buffer(changes, name="expressions.offsets"),
         vertex_count=len(targets.vertices),
         corners=device.buffer(reach.corners.astype(np.uint32), name="expressions.vertices"),
-        triangle_count=len(reach.triangles),
+        triangle_count=len(reach.corners),
         bent_vertices=device.buffer(reach.vertices.astype(np.uint32), name="expressions.vertices"),
         star_starts=device.buffer(reach.starts.astype(np.uint32), name="expressions.vertices"),
         stars=device.buffer(reach.stars.astype(np.uint32), name="expressions.vertices"),
@@ -214,8 +213,8 @@ class AvatarBuffers:
 
     def _level(self, avatar: Model, places: RigPlaces, statics: Mapping[str, StoredBuffer]) -> LevelBuffers:
         texels, coarser = avatar.rig.texels, avatar.wavelet.coarser
-        tiles, tile_rows = texel_tiles(texels.texels, texels.size)
-        reach = reach_of(self._targets.vertices, avatar.rig.mesh.faces, texels.triangles)
+        reached = reach_of(self._targets.vertices, avatar.rig.mesh.faces, texels.triangles).texels
+        tiles = texel_tiles(texels.texels, texels.size, reached)
         geometry, appearance = (
             BranchLevel(self._upsampling(len(getattr(avatar, name).details), coarser), statics[name])
             for name in BRANCHES
@@ -227,9 +226,7 @@ class AvatarBuffers:
             places=places,
             tile_count=len(tiles),
             tiles=self._upload(tiles, "texels.texels"),
-            tile_rows=self._upload(tile_rows, "texels.texels"),
-            reached=self._upload(reach.texels.astype(np.uint32), "expressions.vertices"),
-            reached_count=len(reach.texels),
+            reached=int(reached.sum()),
             geometry=geometry,
             appearance=appearance,
         )

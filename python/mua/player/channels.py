@@ -4,6 +4,7 @@ Kept a plain list in the order of the kernels, as unity-package/Runtime/ChannelD
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -19,8 +20,8 @@ LAYER_ROWS, MESH_COLUMNS = 8, 64  # outputs of a group of MlpMatmul and of MlpMa
 LL_PAIRS = 64  # pairs of texels, a word each, of a group of BlendLl
 DETAIL_TILE = 24  # texels along a side of a group of BlendDetail
 COARSE_TILE = 16  # samples along a side that a group of InverseDwt doubles
-EXPRESSED = 64  # vertices, triangles or texels of a group of the kernels of expressions
-BEND = 48  # bytes of a bent triangle or vertex
+EXPRESSED = 64  # vertices or triangles of a group of the kernels of expressions
+BEND = 24  # bytes of a bent triangle or vertex
 
 
 @dataclass
@@ -70,7 +71,9 @@ class ChannelDecoder:
         ]
         self.moved = device.buffer(np.zeros(4 * len(avatar.rig.mesh.vertices), np.float32), name="moved")  # [V, 4]
         self.triangle_bends = device.buffer(BEND * self.avatar.expressions.triangle_count, name="triangle_bends")
-        self.vertex_bends = device.buffer(BEND * self.avatar.expressions.bent_count, name="vertex_bends")
+        self.vertex_bends = device.buffer(
+            BEND * len(avatar.rig.mesh.vertices) * bool(avatar.expressions), name="vertex_bends"
+        )
         self.textures = tuple(device.buffer(textures[i], name=f"texture {i}") for i in range(2))
 
     def part(self, commands: Commands, channels: ChannelSet, part: int) -> None:
@@ -81,12 +84,12 @@ class ChannelDecoder:
             branch, shown, first_row = self.avatar.appearance, channels.level.appearance, ROWS // 2
         if part % 2 == 0:
             self._blend(commands, branch, channels)
-        else:
-            self._texels(commands, branch, shown, channels, first_row)
+            return
         if part == 1:
             self._coarse(commands, channels)
-        if part == PARTS - 1 and channels.expressive:
-            self._express(commands, channels)
+            if channels.expressive:
+                self._express(commands, channels)
+        self._texels(commands, branch, shown, channels, first_row)
 
     def _mlp(self, commands: Commands, mlp: tuple[LayerBuffers, ...], components: Buffer) -> Buffer:
         """The MLP's output for the components; valid until the next MLP runs."""
@@ -118,8 +121,8 @@ class ChannelDecoder:
         self._layer(commands, kernel, basis, coefficients, channels.mesh, MESH_COLUMNS, relu=False)
 
     def _express(self, commands: Commands, channels: ChannelSet) -> None:
-        """Move the vertices of expressions, and bend the texels in reach."""
-        targets, level = self.avatar.expressions, channels.level
+        """Move the vertices of expressions, and say how those in reach bend."""
+        targets = self.avatar.expressions
         moving = {"moved": self.moved, "mesh": channels.mesh}
         commands.dispatch(
             self._sum_targets,
@@ -137,39 +140,21 @@ class ChannelDecoder:
         commands.dispatch(
             self._bend_triangles,
             (groups(targets.triangle_count, EXPRESSED), 1, 1),
-            {
-                "vertices": targets.bent_vertices,
-                "corners": targets.corners,
-                "triangle_bends": self.triangle_bends,
-                **moving,
-            },
+            {"corners": targets.corners, "triangle_bends": self.triangle_bends, **moving},
             triangle_count=targets.triangle_count,
         )
         commands.dispatch(
             self._bend_vertices,
             (groups(targets.bent_count, EXPRESSED), 1, 1),
             {
+                "vertices": targets.bent_vertices,
                 "starts": targets.star_starts,
                 "stars": targets.stars,
+                "moved": self.moved,
                 "triangle_bends": self.triangle_bends,
                 "vertex_bends": self.vertex_bends,
             },
             vertex_count=targets.bent_count,
-        )
-        commands.dispatch(
-            self._bend_texels,
-            (groups(level.reached_count, EXPRESSED), 1, 1),
-            {
-                "reached": level.reached,
-                "texels": level.places.texels,
-                "corners": targets.corners,
-                "vertices": targets.bent_vertices,
-                "moved": self.moved,
-                "vertex_bends": self.vertex_bends,
-                "texel_channels": channels.texel_channels,
-            },
-            texel_count=level.reached_count,
-            splat_count=level.splat_count,
         )
 
     def _blend(self, commands: Commands, branch: BranchBuffers, channels: ChannelSet) -> None:
@@ -255,28 +240,34 @@ class ChannelDecoder:
         size: int,
         first_row: int,
     ) -> None:
-        """All levels without details, from planes of `size`, and the static offset, at the valid texels."""
-        level, upsampling = channels.level, shown.upsampling
-        commands.dispatch(
-            self._upsample_texels,
-            (level.tile_count, 1, groups(branch.channels, BATCH)),
-            {
-                "ll": self.textures[0],
-                "upsampling": upsampling.taps,
-                "tiles": level.tiles,
-                "tile_rows": level.tile_rows,
-                "static_offset": shown.static_offset.words,
-                "texel_channels": channels.texel_channels,
-            },
-            static_offset_layout=shown.static_offset.layout,
-            channels=branch.channels,
-            size=size,
-            factor=upsampling.factor,
-            reach=upsampling.reach,
-            delay=upsampling.delay,
-            texel_count=level.splat_count,
-            first_row=first_row,
-        )
+        """All levels without details, from planes of `size`, and the static offset, at the valid texels.
+
+        Those in reach of expressions bend with geometry, and are lit with appearance.
+        """
+        level, upsampling, is_geometry = channels.level, shown.upsampling, first_row == 0
+        buffers = {
+            "ll": self.textures[0],
+            "upsampling": upsampling.taps,
+            "tiles": level.tiles,
+            "static_offset": shown.static_offset.words,
+            "texel_channels": channels.texel_channels,
+        }
+        constants: dict[str, Any] = {
+            "static_offset_layout": shown.static_offset.layout,
+            "channels": branch.channels,
+            "size": size,
+            "factor": upsampling.factor,
+            "reach": upsampling.reach,
+            "delay": upsampling.delay,
+            "texel_count": level.splat_count,
+        }
+        if is_geometry and channels.expressive:
+            places = {"faces": level.places.faces, "texels": level.places.texels, "vertex_bends": self.vertex_bends}
+            commands.dispatch(self._bend_texels, (level.tile_count, 1, 1), buffers | places, **constants)
+            return
+        constants |= {"first_row": first_row, "lit": int(channels.expressive)}
+        batches = groups(branch.channels, BATCH)
+        commands.dispatch(self._upsample_texels, (level.tile_count, 1, batches), buffers, **constants)
 
 
 def groups(count: int, size: int) -> int:

@@ -1,7 +1,7 @@
 // An avatar's tensors on the device, in the type in which the file stores them. Reference: python/mua/player/buffers.py.
 
 import { coarserTexture, textureOf } from "./coarser.js";
-import { texelTiles, texelWords, upsamplingTaps } from "./prepare.js";
+import { TILE_WORDS, texelTiles, texelWords, upsamplingTaps } from "./prepare.js";
 
 /** @typedef {import("./device.js").Memory} Memory */
 /** @typedef {import("./format/read.js").Avatar} Avatar */
@@ -18,8 +18,6 @@ import { texelTiles, texelWords, upsamplingTaps } from "./prepare.js";
  * @property {GPUBuffer} texels where they lie on the mesh
  * @property {number} tileCount
  * @property {GPUBuffer} tiles
- * @property {GPUBuffer} tileRows
- * @property {{buffer: GPUBuffer, count: number} | null} reached texels that expressions may bend
  * @property {BranchLevel} geometry
  * @property {BranchLevel} appearance
  */
@@ -72,16 +70,14 @@ export class AvatarBuffers {
     /** @type {{geometry: Stored | Float32Array, appearance: Stored | Float32Array}} */ statics,
     /** @type {number} */ number,
   ) {
-    const { tiles, rows } = texelTiles(texels);
+    const tiles = texelTiles(texels, this.expressing?.reached);
     return {
       number,
       size: texels.size,
       splatCount: texels.texels.length,
       texels: this.memory.buffer(texelWords(texels), "texels"),
-      tileCount: tiles.length,
+      tileCount: tiles.length / TILE_WORDS,
       tiles: this.memory.buffer(tiles, "texels.texels"),
-      tileRows: this.memory.buffer(rows, "texels.texels"),
-      reached: this.expressing?.reached(texels.triangles) ?? null,
       geometry: this.branchLevel("geometry", statics.geometry, number),
       appearance: this.branchLevel("appearance", statics.appearance, number),
     };

@@ -49,18 +49,20 @@ export function synthesis(device, taps) {
   return kernelWithRoom(device, InverseDwt, "filtered", rows * COARSE_TILE);
 }
 
-/** UpsampleTexels, whose groups share the samples of ll that a tile of texels needs. @param {Device} device @param {{factor: number, reach: number}} upsampling */
-export function upsampler(device, { factor, reach }) {
+/** UpsampleTexels or BendTexels, whose groups share the samples of ll that a tile of texels needs. @param {Device} device @param {{factor: number, reach: number}} upsampling */
+export function upsampler(device, { factor, reach }, shader = UpsampleTexels) {
   const samples = groups(TEXEL_TILE - 1, factor) + reach;
-  return kernelWithRoom(device, UpsampleTexels, "upsampled", samples * TEXEL_TILE);
+  return kernelWithRoom(device, shader, "upsampled", samples * TEXEL_TILE);
 }
 
-/** The kernels that depend on the avatar, for its finest level. @param {Device} device @param {Avatar} avatar */
-export function kernelsFor(device, { wavelet, geometry, appearance }) {
+/** The kernels that depend on the avatar, for its finest level. @param {Device} device @param {Avatar} avatar @param {import("./shader.js").Shader} [bending] of one with expressions */
+export function kernelsFor(device, { wavelet, geometry, appearance }, bending) {
   const upsamplings = [geometry, appearance].map(({ details }) =>
     upsamplingTaps(wavelet.recLo, wavelet.levels - details.length),
   );
-  return [synthesis(device, wholeWords(wavelet.recLo).length), ...upsamplings.map((one) => upsampler(device, one))];
+  const bent = bending ? [upsampler(device, upsamplings[0], bending)] : [];
+  const all = upsamplings.map((one) => upsampler(device, one));
+  return [synthesis(device, wholeWords(wavelet.recLo).length), ...all, ...bent];
 }
 
 /** The buffers between the kernels of a decode, sized once: parts read what the one before left in them. */
@@ -90,12 +92,12 @@ export class ChannelDecoder {
     const { level } = channels;
     if (part === 0) this.blend(pass, geometry, channels);
     if (part === 1) {
-      this.texels(pass, geometry, level.geometry, channels, 0);
       this.coarse(pass, channels);
+      if (channels.expressive) this.buffers.expressing?.dispatch(pass, channels);
+      this.texels(pass, geometry, level.geometry, channels, 0);
     }
     if (part === 2) this.blend(pass, appearance, channels);
     if (part === 3) this.texels(pass, appearance, level.appearance, channels, ROWS / 2);
-    if (part === PARTS - 1 && channels.expressive) this.buffers.expressing?.dispatch(pass, channels);
   }
 
   /** Output of the MLP for the components; the next MLP overwrites it. */
@@ -215,34 +217,40 @@ export class ChannelDecoder {
   }
 
   /**
-   * All levels without details, from planes of `size`, and the static offset, at the valid texels.
+   * All levels without details, from planes of `size`, and the static offset, at the valid texels; those in reach of
+   * expressions bend with geometry, and are lit with appearance.
    * @param {GPUComputePassEncoder} pass @param {Branch} branch @param {BranchLevel} shown @param {ChannelSet} channels
    * @param {number} size @param {number} firstRow
    */
   upsample(pass, branch, shown, channels, size, firstRow) {
     const { level } = channels;
     const { taps, factor, reach, delay } = shown.upsampling;
-    upsampler(this.buffers.memory.device, shown.upsampling).dispatch(
-      pass,
-      [level.tileCount, 1, groups(branch.channels, BATCH)],
-      {
-        ll: this.textures[0],
-        upsampling: taps,
-        tiles: level.tiles,
-        tile_rows: level.tileRows,
-        static_offset: shown.staticOffset.words,
-        texel_channels: channels.texelChannels,
-      },
-      {
-        static_offset_layout: shown.staticOffset.layout,
-        channels: branch.channels,
-        size,
-        factor,
-        reach,
-        delay,
-        texel_count: level.splatCount,
-        first_row: firstRow,
-      },
-    );
+    const { device } = this.buffers.memory;
+    const expressing = channels.expressive ? this.buffers.expressing : null;
+    const buffers = {
+      ll: this.textures[0],
+      upsampling: taps,
+      tiles: level.tiles,
+      static_offset: shown.staticOffset.words,
+      texel_channels: channels.texelChannels,
+    };
+    const constants = {
+      static_offset_layout: shown.staticOffset.layout,
+      channels: branch.channels,
+      size,
+      factor,
+      reach,
+      delay,
+      texel_count: level.splatCount,
+    };
+    if (expressing && firstRow === 0) {
+      const places = { faces: this.buffers.faces, texels: level.texels, vertex_bends: expressing.buffers.vertex_bends };
+      const bender = upsampler(device, shown.upsampling, expressing.shader);
+      bender.dispatch(pass, [level.tileCount, 1, 1], { ...buffers, ...places }, constants);
+      return;
+    }
+    const batches = groups(branch.channels, BATCH);
+    const own = { ...constants, first_row: firstRow, lit: Number(expressing !== null) };
+    upsampler(device, shown.upsampling).dispatch(pass, [level.tileCount, 1, batches], buffers, own);
   }
 }

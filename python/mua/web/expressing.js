@@ -1,4 +1,4 @@
-// The expressions of an avatar on the device, and what they do after a decode: they move vertices, and bend the texels in their
+// The expressions of an avatar on the device, and what they do in a decode: they move vertices, and bend the texels in their
 // reach along. Fetched for avatars that have some. References: python/mua/player/channels.py, python/mua/kernels/expressions.py.
 
 import { FLOAT, groups } from "./channels.js";
@@ -9,11 +9,12 @@ import { BendTexels, BendTriangles, BendVertices, SumTargets } from "./wgsl/expr
 /** @typedef {import("./channels.js").ChannelSet} ChannelSet */
 /** @typedef {import("./format/read.js").Avatar} Avatar */
 
-const EXPRESSED = 64; // vertices, triangles or texels of a group
-const BEND = 48; // bytes of a bent triangle or vertex
+const EXPRESSED = 64; // vertices or triangles of a group
+const BEND = 24; // bytes of a bent triangle or vertex
 /** @type {typeof import("./rules.js").heldBack | null} */
 let heldBack = null; // fetched for avatars that have rules
-export const KERNELS = { SumTargets, BendTriangles, BendVertices, BendTexels };
+export const KERNELS = { SumTargets, BendTriangles, BendVertices };
+export { BendTexels };
 
 /** Fetch what else the expressions of an avatar need. */
 export async function fetchRules(/** @type {Avatar} */ { targets }) {
@@ -23,42 +24,36 @@ export async function fetchRules(/** @type {Avatar} */ { targets }) {
 export class Expressing {
   constructor(/** @type {Memory} */ memory, /** @type {Avatar} */ avatar) {
     const targets = byVertex(avatar.targets);
-    const reach = reachOf(targets.vertices, avatar.template.faces, new Int32Array());
+    const reach = reachOf(targets.vertices, avatar.template.faces);
     this.memory = memory;
-    this.avatar = avatar;
+    this.rules = avatar.targets.rules;
+    this.shader = BendTexels;
+    this.reached = reach.triangles;
     this.moving = targets.vertices;
     this.triangleCount = reach.corners.length / 3;
     this.bentCount = reach.vertices.length;
     this.buffers = {
       vertices: memory.buffer(targets.vertices, "expressions.vertices"),
       starts: memory.buffer(targets.starts, "expressions.starts"),
-      expressions: memory.buffer(targets.expressions, "expressions.vertices"),
-      changes: memory.buffer(targets.changes, "expressions.offsets"),
+      expressions: memory.buffer(shorts(targets.expressions), "expressions.vertices"),
+      changes: memory.buffer(shorts(targets.changes.map(halfOf)), "expressions.offsets"),
       corners: memory.buffer(reach.corners, "expressions.vertices"),
       bentVertices: memory.buffer(reach.vertices, "expressions.vertices"),
       starStarts: memory.buffer(reach.starts, "expressions.vertices"),
       stars: memory.buffer(reach.stars, "expressions.vertices"),
       moved: memory.buffer(FLOAT * 4 * avatar.coarse.vertices, "moved"), // [V, 4], 0 where none moves a vertex
       triangle_bends: memory.buffer(BEND * this.triangleCount, "triangle_bends"),
-      vertex_bends: memory.buffer(BEND * this.bentCount, "vertex_bends"),
+      vertex_bends: memory.buffer(BEND * avatar.coarse.vertices, "vertex_bends"), // of those in reach
     };
   }
 
   /** The weights [E] that show of those that a clip and a page set. */
   shown(/** @type {Float32Array} */ weights) {
-    const { rules } = this.avatar.targets;
-    return rules && heldBack ? heldBack(rules, weights) : weights;
+    return this.rules && heldBack ? heldBack(this.rules, weights) : weights;
   }
 
-  /** Texels of a level that expressions may bend, [K, 2] with the place of their triangle. */
-  reached(/** @type {Int32Array} */ triangles) {
-    const { texels } = reachOf(this.moving, this.avatar.template.faces, triangles);
-    return { buffer: this.memory.buffer(texels, "expressions.vertices"), count: texels.length / 2 };
-  }
-
-  /** Append what the weights in `channels` do to the mesh and the texels there. @param {GPUComputePassEncoder} pass @param {ChannelSet} channels */
-  dispatch(pass, { level: { reached, splatCount, texels }, weights, mesh, texelChannels }) {
-    if (!reached) return;
+  /** Append what the weights in `channels` do to the mesh, and how vertices bend then. @param {GPUComputePassEncoder} pass @param {ChannelSet} channels */
+  dispatch(pass, { weights, mesh }) {
     const { vertices, starts, expressions, changes, corners, bentVertices, starStarts, stars } = this.buffers;
     const { moved, triangle_bends, vertex_bends } = this.buffers;
     const kernels = kernelsOf(this.memory.device, KERNELS);
@@ -71,25 +66,36 @@ export class Expressing {
     kernels.BendTriangles.dispatch(
       pass,
       [groups(this.triangleCount, EXPRESSED), 1, 1],
-      { vertices: bentVertices, corners, moved, mesh, triangle_bends },
+      { corners, moved, mesh, triangle_bends },
       { triangle_count: this.triangleCount },
     );
     kernels.BendVertices.dispatch(
       pass,
       [groups(this.bentCount, EXPRESSED), 1, 1],
-      { starts: starStarts, stars, triangle_bends, vertex_bends },
+      { vertices: bentVertices, starts: starStarts, stars, moved, triangle_bends, vertex_bends },
       { vertex_count: this.bentCount },
     );
-    kernels.BendTexels.dispatch(
-      pass,
-      [groups(reached.count, EXPRESSED), 1, 1],
-      {
-        ...{ reached: reached.buffer, texels, corners, vertices: bentVertices, moved },
-        ...{ vertex_bends, texel_channels: texelChannels },
-      },
-      { texel_count: reached.count, splat_count: splatCount },
-    );
   }
+}
+
+/** Numbers of 16 bits, two to a word. @param {ArrayLike<number>} numbers */
+export function shorts(numbers) {
+  const all = new Uint16Array(2 * Math.ceil(numbers.length / 2));
+  all.set(numbers);
+  return new Uint32Array(all.buffer);
+}
+
+const single = new Float32Array(1);
+const bits = new Uint32Array(single.buffer);
+const [SIGN, LEAST_NORMAL, HALF] = [0x8000, 113 << 23, 0x3f000000]; // a half's sign; bits of 2^-14 and of 0.5
+
+/** The half float nearest to a number of at most 65,504, ties to even, as its bits. */
+export function halfOf(/** @type {number} */ value) {
+  const sign = value < 0 || Object.is(value, -0) ? SIGN : 0;
+  single[0] = Math.abs(value);
+  if (bits[0] >= LEAST_NORMAL) return sign | (((bits[0] + 0xfff + ((bits[0] >> 13) & 1)) >> 13) - (112 << 10));
+  single[0] += 0.5; // whose last bit is a subnormal's
+  return sign | (bits[0] - HALF);
 }
 
 /**
@@ -117,24 +123,20 @@ export function byVertex({ starts, vertices, offsets, gains }) {
 }
 
 /**
- * What moving vertices may bend: the triangles with a corner beside them, as places of their corners [T, 3] among the
- * vertices [B] that these are; where each vertex' triangles begin [B + 1] in a list [3 T] of all; and the texels on them with
- * the place [K, 2] of their triangle. @param {Uint32Array} moving @param {Int32Array} faces @param {Int32Array} triangles of texels
+ * What moving vertices may bend: the triangles with a corner beside them, as flags [F] and as their corners [T, 3]; the
+ * vertices [B] that these are; and where each vertex' triangles begin [B + 1] in a list [3 T] of all.
+ * @param {Uint32Array} moving @param {Int32Array} faces
  */
-export function reachOf(moving, faces, triangles) {
+export function reachOf(moving, faces) {
   const beside = new Set(facesAt(faces, new Set(moving)).flatMap((face) => cornersOf(faces, face)));
   const held = facesAt(faces, beside);
-  const vertices = Uint32Array.from(new Set(held.flatMap((face) => cornersOf(faces, face)))).sort();
+  const corners = Uint32Array.from(held.flatMap((face) => cornersOf(faces, face)));
+  const vertices = Uint32Array.from(new Set(corners)).sort();
   const placeOf = new Map(Array.from(vertices, (vertex, place) => [vertex, place]));
-  const corners = Uint32Array.from(
-    held.flatMap((face) => cornersOf(faces, face).map((vertex) => placeOf.get(vertex) ?? 0)),
-  );
-  const places = new Int32Array(faces.length / 3).fill(-1);
-  held.forEach((face, place) => (places[face] = place));
-  /** @type {number[]} */
-  const texels = [];
-  triangles.forEach((triangle, texel) => places[triangle] >= 0 && texels.push(texel, places[triangle]));
-  return { vertices, corners, ...starsOf(corners, vertices.length), texels: Uint32Array.from(texels) };
+  const triangles = new Uint8Array(faces.length / 3);
+  for (const face of held) triangles[face] = 1;
+  const places = corners.map((vertex) => placeOf.get(vertex) ?? 0);
+  return { triangles, corners, vertices, ...starsOf(places, vertices.length) };
 }
 
 /** The faces, ascending, that have a corner among vertices. @param {Int32Array} faces @param {Set<number>} vertices */

@@ -2,6 +2,7 @@
 // splat_project.py.
 
 const TILE = 16; // texels along a side
+export const TILE_WORDS = 2 * (1 + TILE);
 const LARGEST_BARYCENTRIC = 65535;
 const ONE_SIDED = 2 ** 31; // beside the triangle of a texel that is not drawn from behind
 
@@ -31,27 +32,26 @@ function toEven(/** @type {number} */ value) {
 }
 
 /**
- * Tiles of 16 x 16 texels that hold a valid one: row << 16 | column of each, ascending; and of each of its rows the place
- * in `texels` of the first that it holds, and its columns as bits.
+ * Tiles of 16 x 16 texels that hold a valid one, ascending: column and row of each; and of each of its rows the place in
+ * `texels` of the first that it holds, and its columns as bits, from bit 16 on those in reach of expressions.
+ * @param {{texels: Int32Array, size: number, triangles: Int32Array}} texels @param {Uint8Array} [reached] triangles
  */
-export function texelTiles(/** @type {{texels: Int32Array, size: number}} */ { texels, size }) {
+export function texelTiles({ texels, size, triangles }, reached) {
   const across = Math.ceil(size / TILE);
   const slots = new Int32Array(across * across).fill(-1);
   for (const texel of texels) slots[tileOf(texel, size, across)] = 0;
-  /** @type {number[]} */
-  const tiles = [];
-  slots.forEach((slot, tile) => {
-    if (slot < 0) return;
-    slots[tile] = tiles.length;
-    tiles.push(Math.floor(tile / across) * 65536 + (tile % across));
+  const held = Array.from(slots.keys()).filter((tile) => slots[tile] === 0);
+  const tiles = new Uint32Array(TILE_WORDS * held.length);
+  held.forEach((tile, slot) => {
+    slots[tile] = slot;
+    tiles.set([tile % across, Math.floor(tile / across)], TILE_WORDS * slot);
   });
-  const rows = new Uint32Array(2 * TILE * tiles.length);
   texels.forEach((texel, place) => {
-    const line = 2 * (TILE * slots[tileOf(texel, size, across)] + (Math.floor(texel / size) % TILE));
-    if (!rows[line + 1]) rows[line] = place;
-    rows[line + 1] |= 1 << ((texel % size) % TILE);
+    const line = TILE_WORDS * slots[tileOf(texel, size, across)] + 2 * (1 + (Math.floor(texel / size) % TILE));
+    if (!tiles[line + 1]) tiles[line] = place;
+    tiles[line + 1] |= (reached?.[triangles[place]] ? 0x10001 : 1) << ((texel % size) % TILE);
   });
-  return { tiles: Uint32Array.from(tiles), rows };
+  return tiles;
 }
 
 function tileOf(/** @type {number} */ texel, /** @type {number} */ size, /** @type {number} */ across) {

@@ -50,11 +50,19 @@ internal static class LevelProgram
     private static Upload Uploaded(Upload upload)
     {
         Array elements = Elements(upload);
-        if (!(elements is TexelTiles.Row[])) // which a frame is made with
-        {
-            Print("uploaded", elements);
-        }
+        Print("uploaded", elements is TexelTiles.Row[] ? Words((TexelTiles.Row[])elements) : elements);
         return upload;
+    }
+
+    private static int[] Words(TexelTiles.Row[] rows)
+    {
+        var words = new List<int>();
+        foreach (TexelTiles.Row row in rows)
+        {
+            words.Add(row.First);
+            words.Add(row.Columns);
+        }
+        return words.ToArray();
     }
 
     /// <summary>Levels of a line: budget, then for each avatar distance, texel, shown, count of levels, counts.</summary>

@@ -10,12 +10,10 @@ namespace Mua.Format
     /// </summary>
     internal sealed class Steps
     {
+        private const int Bytes = 1 << 8; // numbers of one byte
         private const int Numbers = 1 << 16;
-        private const uint LeastNormal = 113 << 23; // bits of 2^-14
-        private const uint BiasDifference = (127 - 15) << 10;
-        private const int DroppedBits = 23 - 10;
 
-        private readonly ushort[][] halves = new ushort[25][]; // of every number, by how often 1 is halved
+        private readonly ushort[][] halves = new ushort[25][]; // of the first numbers, or of all, by how often 1 is halved
 
         [StructLayout(LayoutKind.Explicit)]
         private struct Bits
@@ -40,8 +38,41 @@ namespace Mua.Format
             int row = found.Length / scales.Length;
             for (int i = 0; i < scales.Length; i++)
             {
-                Expand(low.Slice(i * row, row), high.Slice(i * row, row), Known(scales[i]), found.Slice(i * row, row));
+                Expand(low.Slice(i * row, row), high.Slice(i * row, row), scales[i], found.Slice(i * row, row));
             }
+        }
+
+        /// <summary>One row; what is known of a scale is made where the row has as many numbers as that.</summary>
+        private void Expand(ReadOnlySpan<byte> low, ReadOnlySpan<byte> high, float scale, Span<ushort> found)
+        {
+            int numbers = IsZero(high) ? Bytes : Numbers, halvings = 127 - (int)(new Bits { Value = scale }.Word >> 23);
+            ushort[] known = Volatile.Read(ref halves[halvings]);
+            if ((known?.Length ?? 0) < numbers && (numbers == Bytes || found.Length >= numbers))
+            {
+                known = Known(scale, numbers);
+                Volatile.Write(ref halves[halvings], known); // other threads may make the same
+            }
+            if ((known?.Length ?? 0) >= numbers)
+            {
+                Expand(low, high, known, found);
+                return;
+            }
+            for (int at = 0; at < found.Length; at++)
+            {
+                found[at] = HalfOf(low[at] | high[at] << 8, scale);
+            }
+        }
+
+        private static bool IsZero(ReadOnlySpan<byte> bytes)
+        {
+            foreach (byte one in bytes)
+            {
+                if (one != 0)
+                {
+                    return false;
+                }
+            }
+            return true;
         }
 
         /// <summary>One row, four numbers at a step.</summary>
@@ -62,33 +93,19 @@ namespace Mua.Format
             }
         }
 
-        private ushort[] Known(float scale)
+        private static ushort[] Known(float scale, int numbers)
         {
-            int halvings = 127 - (int)(new Bits { Value = scale }.Word >> 23);
-            ushort[] known = Volatile.Read(ref halves[halvings]);
-            if (known == null)
+            var known = new ushort[numbers];
+            for (int number = 0; number < numbers; number++)
             {
-                known = new ushort[Numbers];
-                for (int i = 0; i < Numbers; i++)
-                {
-                    bool isNegative = i % 2 != 0;
-                    known[i] = (ushort)(HalfOf((isNegative ? i / 2 + 1 : i / 2) * scale) | (isNegative ? 0x8000u : 0u));
-                }
-                Volatile.Write(ref halves[halvings], known); // other threads may make the same
+                known[number] = HalfOf(number, scale);
             }
             return known;
         }
 
-        /// <summary>The half nearest to a multiple of 2^-24 that is not negative, ties to even.</summary>
-        private static uint HalfOf(float value)
+        private static ushort HalfOf(int number, float scale)
         {
-            uint word = new Bits { Value = value }.Word;
-            if (word < LeastNormal)
-            {
-                return (uint)(value / (float)Limits.LeastStep);
-            }
-            uint half = (1u << (DroppedBits - 1)) - 1 + ((word >> DroppedBits) & 1);
-            return ((word + half) >> DroppedBits) - BiasDifference;
+            return Half.FromSingle((number % 2 == 0 ? number / 2 : -(number / 2) - 1) * scale);
         }
     }
 }

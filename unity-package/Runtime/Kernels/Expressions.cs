@@ -3,11 +3,11 @@ using UnityEngine.Rendering;
 
 namespace Mua
 {
-    /// <summary>Vertices that expressions move, and the texels that follow: ComputeShaders/expressions.compute.</summary>
+    /// <summary>Vertices that expressions move, and how those about them bend: ComputeShaders/expressions.compute.</summary>
     internal sealed class Expressions
     {
         private const string File = "expressions.compute";
-        private const int Expressed = 64; // vertices, triangles or texels of a group
+        private const int Expressed = 64; // vertices or triangles of a group
 
         private static readonly int Vertices = Shader.PropertyToID("vertices");
         private static readonly int Starts = Shader.PropertyToID("starts");
@@ -16,26 +16,20 @@ namespace Mua
         private static readonly int Weights = Shader.PropertyToID("weights");
         private static readonly int Corners = Shader.PropertyToID("corners");
         private static readonly int Stars = Shader.PropertyToID("stars");
-        private static readonly int Texels = Shader.PropertyToID("texels");
-        private static readonly int Reached = Shader.PropertyToID("reached");
         private static readonly int Moved = Shader.PropertyToID("moved");
         private static readonly int Mesh = Shader.PropertyToID("mesh");
         private static readonly int TriangleBends = Shader.PropertyToID("triangle_bends");
         private static readonly int VertexBends = Shader.PropertyToID("vertex_bends");
-        private static readonly int TexelChannels = Shader.PropertyToID("texel_channels");
         private static readonly int VertexCount = Shader.PropertyToID("vertex_count");
         private static readonly int TriangleCount = Shader.PropertyToID("triangle_count");
-        private static readonly int TexelCount = Shader.PropertyToID("texel_count");
-        private static readonly int SplatCount = Shader.PropertyToID("splat_count");
 
-        private readonly Kernel sumTargets, bendTriangles, bendVertices, bendTexels;
+        private readonly Kernel sumTargets, bendTriangles, bendVertices;
 
         public Expressions(ComputeShader shader)
         {
             sumTargets = new Kernel(shader, File, "SumTargets");
             bendTriangles = new Kernel(shader, File, "BendTriangles");
             bendVertices = new Kernel(shader, File, "BendVertices");
-            bendTexels = new Kernel(shader, File, "BendTexels");
         }
 
         /// <summary>How far the weights move the vertices, which they are moved by.</summary>
@@ -58,7 +52,6 @@ namespace Mua
             CommandBuffer commands, ExpressionBuffers targets, GraphicsBuffer moved, GraphicsBuffer mesh,
             GraphicsBuffer triangleBends, GraphicsBuffer vertexBends)
         {
-            bendTriangles.Set(commands, Vertices, targets.BentVertices);
             bendTriangles.Set(commands, Corners, targets.Corners);
             bendTriangles.Set(commands, Moved, moved);
             bendTriangles.Set(commands, Mesh, mesh);
@@ -66,32 +59,17 @@ namespace Mua
             bendTriangles.Set(commands, TriangleCount, targets.TriangleCount);
             Dispatch(commands, bendTriangles, targets.TriangleCount);
 
+            bendVertices.Set(commands, Vertices, targets.BentVertices);
             bendVertices.Set(commands, Starts, targets.StarStarts);
             bendVertices.Set(commands, Stars, targets.Stars);
+            bendVertices.Set(commands, Moved, moved);
             bendVertices.Set(commands, TriangleBends, triangleBends);
             bendVertices.Set(commands, VertexBends, vertexBends);
             bendVertices.Set(commands, VertexCount, targets.BentCount);
             Dispatch(commands, bendVertices, targets.BentCount);
         }
 
-        /// <summary>The texels of a level between these vertices, and their colours.</summary>
-        public void BendTexels(
-            CommandBuffer commands, ExpressionBuffers targets, LevelBuffers level, GraphicsBuffer moved,
-            GraphicsBuffer vertexBends, GraphicsBuffer texelChannels)
-        {
-            bendTexels.Set(commands, Vertices, targets.BentVertices);
-            bendTexels.Set(commands, Moved, moved);
-            bendTexels.Set(commands, Reached, level.Reached);
-            bendTexels.Set(commands, Texels, level.Texels);
-            bendTexels.Set(commands, Corners, targets.Corners);
-            bendTexels.Set(commands, VertexBends, vertexBends);
-            bendTexels.Set(commands, TexelChannels, texelChannels);
-            bendTexels.Set(commands, TexelCount, level.ReachedCount);
-            bendTexels.Set(commands, SplatCount, level.SplatCount);
-            Dispatch(commands, bendTexels, level.ReachedCount);
-        }
-
-        /// <summary>An engine refuses a dispatch of no groups: an expression may move nothing, or nothing that is drawn.</summary>
+        /// <summary>An engine refuses a dispatch of no groups: an expression may move nothing.</summary>
         private static void Dispatch(CommandBuffer commands, Kernel kernel, int count)
         {
             if (count > 0)

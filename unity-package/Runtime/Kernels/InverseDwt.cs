@@ -3,7 +3,7 @@ using UnityEngine.Rendering;
 
 namespace Mua
 {
-    /// <summary>Wavelet synthesis: ComputeShaders/inverse_dwt.compute.</summary>
+    /// <summary>Wavelet synthesis: ComputeShaders/inverse_dwt.compute, and BendTexels of expressions.compute.</summary>
     internal sealed class InverseDwt
     {
         private const string File = "inverse_dwt.compute";
@@ -23,20 +23,23 @@ namespace Mua
         private static readonly int Reach = Shader.PropertyToID("reach");
         private static readonly int Delay = Shader.PropertyToID("delay");
         private static readonly int Tiles = Shader.PropertyToID("tiles");
-        private static readonly int TileRows = Shader.PropertyToID("tile_rows");
         private static readonly int StaticOffset = Shader.PropertyToID("static_offset");
         private static readonly int StaticOffsetLayout = Shader.PropertyToID("static_offset_layout");
         private static readonly int TexelChannels = Shader.PropertyToID("texel_channels");
         private static readonly int TexelCount = Shader.PropertyToID("texel_count");
         private static readonly int FirstRow = Shader.PropertyToID("first_row");
+        private static readonly int Lit = Shader.PropertyToID("lit");
+        private static readonly int Faces = Shader.PropertyToID("faces");
+        private static readonly int Texels = Shader.PropertyToID("texels");
+        private static readonly int VertexBends = Shader.PropertyToID("vertex_bends");
 
-        private readonly Kernel full;
-        private readonly Kernel upsampleTexels;
+        private readonly Kernel full, upsampleTexels, bendTexels;
 
-        public InverseDwt(ComputeShader shader)
+        public InverseDwt(ComputeShader shader, ComputeShader expressions)
         {
             full = new Kernel(shader, File, "InverseDwt");
             upsampleTexels = new Kernel(shader, File, "UpsampleTexels");
+            bendTexels = new Kernel(expressions, "expressions.compute", "BendTexels");
         }
 
         /// <summary>One level, from planes of `size` to twice that.</summary>
@@ -58,26 +61,45 @@ namespace Mua
 
         /// <summary>
         /// All levels without details, from planes of `size`, plus the static offset, at the valid texels, to rows from
-        /// `firstRow` on.
+        /// `firstRow` on; appearance may be lit as BendTexels left it.
         /// </summary>
         public void UpsampleTexels(
             CommandBuffer commands, LevelBuffers level, BranchLevel shown, int channels, int size, GraphicsBuffer ll,
-            GraphicsBuffer texelChannels, int firstRow)
+            GraphicsBuffer texelChannels, int firstRow, bool isLit)
         {
-            upsampleTexels.Set(commands, Ll, ll);
-            upsampleTexels.Set(commands, UpsamplingTaps, shown.Upsampling.Taps.Buffer);
-            upsampleTexels.Set(commands, Tiles, level.Tiles);
-            upsampleTexels.Set(commands, TileRows, level.TileRows);
-            upsampleTexels.Set(commands, StaticOffset, StaticOffsetLayout, shown.StaticOffset);
-            upsampleTexels.Set(commands, TexelChannels, texelChannels);
-            upsampleTexels.Set(commands, Channels, channels);
-            upsampleTexels.Set(commands, Size, size);
-            upsampleTexels.Set(commands, Factor, shown.Upsampling.Factor);
-            upsampleTexels.Set(commands, Reach, shown.Upsampling.Reach);
-            upsampleTexels.Set(commands, Delay, shown.Upsampling.Delay);
-            upsampleTexels.Set(commands, TexelCount, level.SplatCount);
+            SetUpsampling(commands, upsampleTexels, level, shown, channels, size, ll, texelChannels);
             upsampleTexels.Set(commands, FirstRow, firstRow);
+            upsampleTexels.Set(commands, Lit, isLit ? 1 : 0);
             upsampleTexels.Dispatch(commands, level.TileCount, 1, Kernel.Groups(channels, ChannelBatch));
+        }
+
+        /// <summary>The same of geometry, where the texels in reach of expressions bend as the vertices about them.</summary>
+        public void BendTexels(
+            CommandBuffer commands, LevelBuffers level, BranchLevel shown, int channels, int size, GraphicsBuffer ll,
+            GraphicsBuffer texelChannels, GraphicsBuffer faces, GraphicsBuffer vertexBends)
+        {
+            SetUpsampling(commands, bendTexels, level, shown, channels, size, ll, texelChannels);
+            bendTexels.Set(commands, Faces, faces);
+            bendTexels.Set(commands, Texels, level.Texels);
+            bendTexels.Set(commands, VertexBends, vertexBends);
+            bendTexels.Dispatch(commands, level.TileCount, 1, 1);
+        }
+
+        private static void SetUpsampling(
+            CommandBuffer commands, Kernel kernel, LevelBuffers level, BranchLevel shown, int channels, int size,
+            GraphicsBuffer ll, GraphicsBuffer texelChannels)
+        {
+            kernel.Set(commands, Ll, ll);
+            kernel.Set(commands, UpsamplingTaps, shown.Upsampling.Taps.Buffer);
+            kernel.Set(commands, Tiles, level.Tiles);
+            kernel.Set(commands, StaticOffset, StaticOffsetLayout, shown.StaticOffset);
+            kernel.Set(commands, TexelChannels, texelChannels);
+            kernel.Set(commands, Channels, channels);
+            kernel.Set(commands, Size, size);
+            kernel.Set(commands, Factor, shown.Upsampling.Factor);
+            kernel.Set(commands, Reach, shown.Upsampling.Reach);
+            kernel.Set(commands, Delay, shown.Upsampling.Delay);
+            kernel.Set(commands, TexelCount, level.SplatCount);
         }
     }
 }
