@@ -79,7 +79,7 @@ def test_a_face_costs_what_its_entries_and_the_texels_in_reach_need() -> None:
         "moved": 9,
     }
     texels = bound("BendTexels", read, texel_count=5)
-    assert cost(texels) == Work(bytes=40 + 72 + 32 + 384 + 16 * 8 + 5 * (8 + 32 + 32), flops=5 * work.BEND_TEXEL)
+    assert cost(texels) == Work(bytes=40 + 72 + 32 + 384 + 16 * 8 + 5 * (8 + 48 + 48), flops=5 * work.BEND_TEXEL)
 
 
 def projected(texels: int, vertices: int, faces: int, eyes: int) -> Bound:

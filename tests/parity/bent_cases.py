@@ -23,6 +23,9 @@ LIT_BOUND = 8 * ULP * 8
 # Offsets of at most 2 metres, quaternions of at most 2 and logarithms, of 48 products and sums whose roundings partly
 # cancel: on every device so far 32 sufficed.
 TURNED_BOUND = 2 * 32 * ULP
+# Gradients of colours, of at most 2 each way, turn by twice the angle between two normals, each as exact as a turned
+# offset of 1 metre; the turn itself rounds as that of an offset does.
+MIRRORED_BOUND = 2 * (2 * 2) * TURNED_BOUND / 2 * np.sqrt(3) + TURNED_BOUND
 
 
 @dataclass(frozen=True)
@@ -103,6 +106,7 @@ def random_texture(rng: np.random.Generator, count: int) -> Array:
     texture[:, 3:7] *= (rng.uniform(0.5, 2, count) / np.linalg.norm(texture[:, 3:7], axis=1))[:, None]
     texture[:, :3] = np.clip(texture[:, :3], -2, 2)
     texture[:, 12:15] = np.clip(texture[:, 12:15], -4, 4)
+    texture[:, 15:] = np.clip(texture[:, 15:], -2, 2)
     return texture.astype(np.float16).astype(np.float32)
 
 

@@ -6,6 +6,7 @@ import numpy as np
 from bent_cases import (
     LIT_BOUND,
     MEAN_BOUND,
+    MIRRORED_BOUND,
     TURNED_BOUND,
     WEIGHED_BOUND,
     random_bends,
@@ -315,10 +316,12 @@ def _texels() -> Case:
     vertices, light = random_light(rng, len(bends), dark=3)
     halves_of = np.ascontiguousarray(texture.astype(np.float16).reshape(-1, 6, 4).swapaxes(0, 1))
     words = halves_of.view(np.uint32).reshape(6, texels, 2)
-    exact = bend_texels(bends.astype(float), corners[places], barycentrics, texture.astype(float))
+    exact = np.delete(texture, 11, axis=1).astype(float)
+    exact = bend_texels(bends.astype(float), corners[places], barycentrics, exact)
     gains = light[vertices, 3].astype(float)
-    exact = brighten_texels(gains, corners[places], barycentrics, np.delete(exact, 11, axis=1))[:count]
-    written, lit = (partial(halves, "texel_channels", bound=bound) for bound in (TURNED_BOUND, LIT_BOUND))
+    exact = brighten_texels(gains, corners[places], barycentrics, exact)[:count]
+    bounds = TURNED_BOUND, LIT_BOUND, MIRRORED_BOUND
+    written, lit, mirrored = (partial(halves, "texel_channels", bound=bound) for bound in bounds)
     kept = partial(Expected, "texel_channels", "uint")
     return Case(
         "turns of up to 60 degrees",
@@ -338,8 +341,12 @@ def _texels() -> Case:
             written(exact[:, 8:10], first=4 * texels, period=2),
             kept(words[2, :count, 1], first=4 * texels + 1, period=2),
             kept(words[2, count:], first=2 * (2 * texels + count)),
-            lit(exact[:, 11:15], first=6 * texels),
+            lit(exact[:, 11:13], first=6 * texels, period=2),
+            mirrored(exact[:, 13:15], first=6 * texels + 1, period=2),
             kept(words[3, count:], first=2 * (3 * texels + count)),
-            kept(words[4:], first=8 * texels),
+            mirrored(exact[:, 15:19], first=8 * texels),
+            kept(words[4, count:], first=2 * (4 * texels + count)),
+            mirrored(exact[:, 19:23], first=10 * texels),
+            kept(words[5, count:], first=2 * (5 * texels + count)),
         ),
     )

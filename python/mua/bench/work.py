@@ -37,6 +37,7 @@ BEND_TRIANGLE = 9 + 2 * FRAME + 6 + 7 + 3 * (6 + 8) + 10 + 6 * 5 + 45 + 12
 ADD_BEND = 8 + 12  # on which side the quaternion lies; all of a row
 BEND_TEXEL = 3 * (7 + 2 * 11) + 2 * UNIT_QUATERNION + 30 + 45 + 3 * (6 + 4)  # corners; axes, P of them, logarithms
 BEND_TEXEL += 30 + QUATERNION_PRODUCT + 3 * 3  # offset, rotation, colour
+BEND_TEXEL += 30 + 5 + 9 + 3 * 30  # turned normal, its dot and cross product with the other, gradients of three colours
 PROJECT_EYE = (
     24 + 15 + 24 + 30 + 15 + 18 + 6 + 25 + 12 + 30 + 27
 )  # eye space, slopes, Jacobian J, A = J x axes, A A^T, axes, pixel, box; direction, turned back, SH
@@ -172,10 +173,10 @@ def bend_vertices(dispatch: Bound, _: float) -> Work:
 
 
 def bend_texels(dispatch: Bound, _: float) -> Work:
-    """Place, corners' bends, gathered, and 16 half floats of each texel in reach read; these are written too."""
+    """Place, corners' bends, gathered, and 24 half floats of each texel in reach read; these are written too."""
     (texels,) = _constants(dispatch, "texel_count")
     moved = _bound(dispatch, "reached", "corners", "vertices", "vertex_bends") + 4 * dispatch.sizes["vertices"]
-    return Work(moved + texels * (2 * UINT + 2 * 4 * BATCH * HALF), texels * BEND_TEXEL)
+    return Work(moved + texels * (2 * UINT + 2 * ROWS * BATCH * HALF), texels * BEND_TEXEL)
 
 
 Formula = Callable[[Bound, float], Work]  # work of a dispatch, given the share of the splats that some eye sees

@@ -548,88 +548,14 @@ fn quaternionRotate_0( q_0 : vec4<f32>,  v_0 : vec3<f32>) -> vec3<f32>
     return v_0 + vec3<f32>(q_0.x) * t_0 + cross(_S3, t_0);
 }
 
-fn quaternionMultiply_0( a_0 : vec4<f32>,  b_0 : vec4<f32>) -> vec4<f32>
+fn turnColors_0( texel_1 : u32,  turn_1 : vec4<f32>)
 {
-    var _S4 : f32 = a_0.x;
-    var _S5 : f32 = b_0.x;
-    var _S6 : vec3<f32> = a_0.yzw;
-    var _S7 : vec3<f32> = b_0.yzw;
-    return vec4<f32>(_S4 * _S5 - dot(_S6, _S7), vec3<f32>(_S4) * _S7 + vec3<f32>(_S5) * _S6 + cross(_S6, _S7));
-}
-
-@compute
-@workgroup_size(64, 1, 1)
-fn BendTexels(@builtin(global_invocation_id) thread_0 : vec3<u32>)
-{
-    var _S8 : u32 = thread_0.x;
-    if(_S8 >= (Constants_0.texel_count_0))
-    {
-        return;
-    }
-    var texel_1 : u32 = reached_0[_S8].x;
-    var _S9 : u32 = u32(3) * reached_0[_S8].y;
-    var both_0 : u32 = texels_0[texel_1].y;
-    var shares_0 : vec2<f32> = vec2<f32>(f32((both_0 & (u32(65535)))), f32((both_0 >> (u32(16))))) / vec2<f32>(65535.0f);
-    var _S10 : vec3<f32> = vec3<f32>(shares_0, max(1.0f - shares_0.x - shares_0.y, 0.0f));
-    var _S11 : vec4<f32> = vec4<f32>(vec4<i32>(i32(0)));
-    var i_0 : u32 = u32(0);
-    var turn_1 : vec4<f32> = _S11;
-    var first_0 : vec4<f32> = _S11;
-    var last_0 : vec4<f32> = _S11;
-    var gain_1 : f32 = 0.0f;
-    for(;;)
-    {
-        if(i_0 < u32(3))
-        {
-        }
-        else
-        {
-            break;
-        }
-        var place_0 : u32 = corners_0[_S9 + i_0];
-        var bend_0 : u32 = u32(3) * place_0;
-        var _S12 : vec4<f32> = vec4<f32>(_S10[i_0]);
-        var _S13 : vec4<f32> = addTurn_0(turn_1, _S12 * vertex_bends_0[bend_0]);
-        var first_1 : vec4<f32> = first_0 + _S12 * vertex_bends_0[bend_0 + u32(1)];
-        var last_1 : vec4<f32> = last_0 + _S12 * vertex_bends_0[bend_0 + u32(2)];
-        var gain_2 : f32 = gain_1 + _S10[i_0] * moved_0[vertices_0[place_0]].w;
-        i_0 = i_0 + u32(1);
-        turn_1 = _S13;
-        first_0 = first_1;
-        last_0 = last_1;
-        gain_1 = gain_2;
-    }
-    if(gain_1 != 0.0f)
-    {
-        brighten_0(texel_1, gain_1);
-    }
-    var _S14 : f32 = last_0.z;
-    var _S15 : bool;
-    if(_S14 == 0.0f)
-    {
-        _S15 = true;
-    }
-    else
-    {
-        _S15 = (last_0.w) == 0.0f;
-    }
-    if(_S15)
-    {
-        return;
-    }
-    var _S16 : vec2<u32> = texel_channels_0[u32(2) * Constants_0.splat_count_0 + texel_1];
-    var _S17 : u32 = texel_channels_0[texel_1].y;
-    var offset_0 : vec3<f32> = vec3<f32>(unpackHalves_0(texel_channels_0[texel_1].x), halfAt_0(_S17, u32(0)));
-    var _S18 : u32 = texel_channels_0[Constants_0.splat_count_0 + texel_1].y;
-    var rotation_0 : vec4<f32> = vec4<f32>(halfAt_0(_S17, u32(1)), unpackHalves_0(texel_channels_0[Constants_0.splat_count_0 + texel_1].x), halfAt_0(_S18, u32(0)));
-    var scale_0 : vec3<f32> = vec3<f32>(halfAt_0(_S18, u32(1)), unpackHalves_0(texel_channels_0[u32(2) * Constants_0.splat_count_0 + texel_1].x));
-    var turn_2 : vec4<f32> = turn_1 / vec4<f32>(max(length(turn_1), 1.17549435082228751e-38f));
-    var _S19 : vec4<f32> = rotation_0 / vec4<f32>(max(length(rotation_0), 1.17549435082228751e-38f));
-    var _S20 : f32 = first_0.w;
-    var _S21 : vec3<f32> = vec3<f32>(first_0.x, _S20, last_0.x);
-    var _S22 : vec3<f32> = vec3<f32>(_S20, first_0.y, last_0.y);
-    var _S23 : vec3<f32> = vec3<f32>(last_0.xy, first_0.z);
-    var _S24 : array<vec3<f32>, i32(3)> = array<vec3<f32>, i32(3)>( vec3<f32>(1.0f, 0.0f, 0.0f), vec3<f32>(0.0f, 1.0f, 0.0f), vec3<f32>(0.0f, 0.0f, 1.0f) );
+    var _S4 : vec2<u32> = texel_channels_0[u32(3) * Constants_0.splat_count_0 + texel_1];
+    var _S5 : u32 = texel_channels_0[u32(3) * Constants_0.splat_count_0 + texel_1].y;
+    var y_0 : vec3<f32> = vec3<f32>(halfAt_0(_S5, u32(1)), unpackHalves_0(texel_channels_0[u32(4) * Constants_0.splat_count_0 + texel_1].x));
+    var _S6 : u32 = texel_channels_0[u32(5) * Constants_0.splat_count_0 + texel_1].x;
+    var z_0 : vec3<f32> = vec3<f32>(unpackHalves_0(texel_channels_0[u32(4) * Constants_0.splat_count_0 + texel_1].y), halfAt_0(_S6, u32(0)));
+    var x_0 : vec3<f32> = vec3<f32>(halfAt_0(_S6, u32(1)), unpackHalves_0(texel_channels_0[u32(5) * Constants_0.splat_count_0 + texel_1].y));
     var k_0 : u32 = u32(0);
     for(;;)
     {
@@ -640,15 +566,123 @@ fn BendTexels(@builtin(global_invocation_id) thread_0 : vec3<u32>)
         {
             break;
         }
-        var axis_0 : vec3<f32> = quaternionRotate_0(_S19, _S24[k_0]);
-        scale_0[k_0] = scale_0[k_0] + log(clamp(length(vec3<f32>(axis_0.x) * _S21 + vec3<f32>(axis_0.y) * _S22 + vec3<f32>(axis_0.z) * _S23) / _S14, 0.05000000074505806f, 20.0f));
+        var turned_0 : vec3<f32> = quaternionRotate_0(turn_1, vec3<f32>(- x_0[k_0], - y_0[k_0], z_0[k_0]));
+        x_0[k_0] = - turned_0.x;
+        y_0[k_0] = - turned_0.y;
+        z_0[k_0] = turned_0.z;
         k_0 = k_0 + u32(1);
     }
-    var offset_1 : vec3<f32> = quaternionRotate_0(turn_2, offset_0);
-    var rotation_1 : vec4<f32> = quaternionMultiply_0(turn_2, rotation_0);
-    texel_channels_0[texel_1] = vec2<u32>(packBounded_0(offset_1.xy), packBounded_0(vec2<f32>(offset_1.z, rotation_1.x)));
-    texel_channels_0[Constants_0.splat_count_0 + texel_1] = vec2<u32>(packBounded_0(rotation_1.yz), packBounded_0(vec2<f32>(rotation_1.w, scale_0.x)));
-    texel_channels_0[u32(2) * Constants_0.splat_count_0 + texel_1] = vec2<u32>(packBounded_0(scale_0.yz), _S16.y);
+    texel_channels_0[u32(3) * Constants_0.splat_count_0 + texel_1] = vec2<u32>(_S4.x, (((_S5 & (u32(65535)))) | ((packBounded_0(vec2<f32>(0.0f, y_0.x))))));
+    texel_channels_0[u32(4) * Constants_0.splat_count_0 + texel_1] = vec2<u32>(packBounded_0(y_0.yz), packBounded_0(z_0.xy));
+    texel_channels_0[u32(5) * Constants_0.splat_count_0 + texel_1] = vec2<u32>(packBounded_0(vec2<f32>(z_0.z, x_0.x)), packBounded_0(x_0.yz));
+    return;
+}
+
+fn quaternionMultiply_0( a_0 : vec4<f32>,  b_0 : vec4<f32>) -> vec4<f32>
+{
+    var _S7 : f32 = a_0.x;
+    var _S8 : f32 = b_0.x;
+    var _S9 : vec3<f32> = a_0.yzw;
+    var _S10 : vec3<f32> = b_0.yzw;
+    return vec4<f32>(_S7 * _S8 - dot(_S9, _S10), vec3<f32>(_S7) * _S10 + vec3<f32>(_S8) * _S9 + cross(_S9, _S10));
+}
+
+@compute
+@workgroup_size(64, 1, 1)
+fn BendTexels(@builtin(global_invocation_id) thread_0 : vec3<u32>)
+{
+    var _S11 : u32 = thread_0.x;
+    if(_S11 >= (Constants_0.texel_count_0))
+    {
+        return;
+    }
+    var texel_2 : u32 = reached_0[_S11].x;
+    var _S12 : u32 = u32(3) * reached_0[_S11].y;
+    var both_0 : u32 = texels_0[texel_2].y;
+    var shares_0 : vec2<f32> = vec2<f32>(f32((both_0 & (u32(65535)))), f32((both_0 >> (u32(16))))) / vec2<f32>(65535.0f);
+    var _S13 : vec3<f32> = vec3<f32>(shares_0, max(1.0f - shares_0.x - shares_0.y, 0.0f));
+    var _S14 : vec4<f32> = vec4<f32>(vec4<i32>(i32(0)));
+    var i_0 : u32 = u32(0);
+    var turn_2 : vec4<f32> = _S14;
+    var first_0 : vec4<f32> = _S14;
+    var last_0 : vec4<f32> = _S14;
+    var gain_1 : f32 = 0.0f;
+    for(;;)
+    {
+        if(i_0 < u32(3))
+        {
+        }
+        else
+        {
+            break;
+        }
+        var place_0 : u32 = corners_0[_S12 + i_0];
+        var bend_0 : u32 = u32(3) * place_0;
+        var _S15 : vec4<f32> = vec4<f32>(_S13[i_0]);
+        var _S16 : vec4<f32> = addTurn_0(turn_2, _S15 * vertex_bends_0[bend_0]);
+        var first_1 : vec4<f32> = first_0 + _S15 * vertex_bends_0[bend_0 + u32(1)];
+        var last_1 : vec4<f32> = last_0 + _S15 * vertex_bends_0[bend_0 + u32(2)];
+        var gain_2 : f32 = gain_1 + _S13[i_0] * moved_0[vertices_0[place_0]].w;
+        i_0 = i_0 + u32(1);
+        turn_2 = _S16;
+        first_0 = first_1;
+        last_0 = last_1;
+        gain_1 = gain_2;
+    }
+    if(gain_1 != 0.0f)
+    {
+        brighten_0(texel_2, gain_1);
+    }
+    var _S17 : f32 = last_0.z;
+    var _S18 : bool;
+    if(_S17 == 0.0f)
+    {
+        _S18 = true;
+    }
+    else
+    {
+        _S18 = (last_0.w) == 0.0f;
+    }
+    if(_S18)
+    {
+        return;
+    }
+    var _S19 : vec2<u32> = texel_channels_0[u32(2) * Constants_0.splat_count_0 + texel_2];
+    var _S20 : u32 = texel_channels_0[texel_2].y;
+    var offset_0 : vec3<f32> = vec3<f32>(unpackHalves_0(texel_channels_0[texel_2].x), halfAt_0(_S20, u32(0)));
+    var _S21 : u32 = texel_channels_0[Constants_0.splat_count_0 + texel_2].y;
+    var rotation_0 : vec4<f32> = vec4<f32>(halfAt_0(_S20, u32(1)), unpackHalves_0(texel_channels_0[Constants_0.splat_count_0 + texel_2].x), halfAt_0(_S21, u32(0)));
+    var scale_0 : vec3<f32> = vec3<f32>(halfAt_0(_S21, u32(1)), unpackHalves_0(texel_channels_0[u32(2) * Constants_0.splat_count_0 + texel_2].x));
+    var turn_3 : vec4<f32> = turn_2 / vec4<f32>(max(length(turn_2), 1.17549435082228751e-38f));
+    var unit_0 : vec4<f32> = rotation_0 / vec4<f32>(max(length(rotation_0), 1.17549435082228751e-38f));
+    var _S22 : f32 = first_0.w;
+    var _S23 : vec3<f32> = vec3<f32>(first_0.x, _S22, last_0.x);
+    var _S24 : vec3<f32> = vec3<f32>(_S22, first_0.y, last_0.y);
+    var _S25 : vec3<f32> = vec3<f32>(last_0.xy, first_0.z);
+    const _S26 : vec3<f32> = vec3<f32>(0.0f, 0.0f, 1.0f);
+    var ends_0 : array<vec3<f32>, i32(3)> = array<vec3<f32>, i32(3)>( vec3<f32>(1.0f, 0.0f, 0.0f), vec3<f32>(0.0f, 1.0f, 0.0f), _S26 );
+    var k_1 : u32 = u32(0);
+    for(;;)
+    {
+        if(k_1 < u32(3))
+        {
+        }
+        else
+        {
+            break;
+        }
+        var axis_0 : vec3<f32> = quaternionRotate_0(unit_0, ends_0[k_1]);
+        scale_0[k_1] = scale_0[k_1] + log(clamp(length(vec3<f32>(axis_0.x) * _S23 + vec3<f32>(axis_0.y) * _S24 + vec3<f32>(axis_0.z) * _S25) / _S17, 0.05000000074505806f, 20.0f));
+        k_1 = k_1 + u32(1);
+    }
+    var normal_0 : vec3<f32> = quaternionRotate_0(unit_0, _S26);
+    var turned_1 : vec3<f32> = quaternionRotate_0(turn_3, normal_0);
+    turnColors_0(texel_2, vec4<f32>(dot(normal_0, turned_1), cross(normal_0, turned_1)));
+    var offset_1 : vec3<f32> = quaternionRotate_0(turn_3, offset_0);
+    var rotation_1 : vec4<f32> = quaternionMultiply_0(turn_3, rotation_0);
+    texel_channels_0[texel_2] = vec2<u32>(packBounded_0(offset_1.xy), packBounded_0(vec2<f32>(offset_1.z, rotation_1.x)));
+    texel_channels_0[Constants_0.splat_count_0 + texel_2] = vec2<u32>(packBounded_0(rotation_1.yz), packBounded_0(vec2<f32>(rotation_1.w, scale_0.x)));
+    texel_channels_0[u32(2) * Constants_0.splat_count_0 + texel_2] = vec2<u32>(packBounded_0(scale_0.yz), _S19.y);
     return;
 }
 
