@@ -44,7 +44,7 @@ def map_of(before: Array, after: Array) -> Array:
 
 
 def reflection(normal: Array) -> Array:
-    """What a mirror across the normal makes of a direction, the other way round [3, 3]: half a turn about the normal."""
+    """Half a turn [3, 3] about the normal: from where a mirror's light comes to where it goes."""
     return Rotation.from_rotvec(np.pi * normal).as_matrix()
 
 

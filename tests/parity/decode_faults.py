@@ -202,7 +202,9 @@ DECODING = {
         Fault("rotation of any length stretched", "quaternionRotate(unit,", "quaternionRotate(rotation,"),
         Fault("offset not turned", "quaternionRotate(turn, offset)", "offset"),
         Fault("gradients of colours not turned", "turnColors(texel, float4(dot", "float4 kept = (float4(dot"),
-        Fault("gradients turned half as far", "quaternionRotate(turn, normal);", "quaternionRotate(turn, normal) + normal;"),
+        Fault(
+            "gradients of another length", "quaternionRotate(turn, normal);", "quaternionRotate(turn, normal) + normal;"
+        ),
         Fault("gradients by another axis", "quaternionRotate(unit, ends[2]);", "quaternionRotate(unit, ends[0]);"),
         Fault("x of gradients not negative", "float3(-x[k], -y[k], z[k])", "float3(x[k], -y[k], z[k])"),
         Fault("blue lost", "(words[0].y & 0xffff) |", ""),

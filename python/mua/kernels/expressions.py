@@ -20,7 +20,7 @@ MOST_STRETCH = 20.0  # of an axis, and its inverse the least
 STILL = np.array([1, 0, 0, 0, 1, 1, 1, 0, 0, 0, 1, 0])  # the row of what does not bend
 CONSTANT = slice(APPEARANCE.start, APPEARANCE.start + 3)  # colours that are the same from everywhere
 LINEAR = np.arange(14, 23).reshape(3, 3)[[2, 0, 1]]  # channels [xyz, rgb] of the gradient of colours over the direction
-SIGNS = np.array([-1, -1, 1])[:, None]  # of these channels
+SIGNS = np.array([-1, -1, 1], np.int8)[:, None]  # of these channels
 MIDDLE = 0.5  # of colours, where their channels are 0
 SYMMETRIC = np.array([[4, 7, 8], [7, 5, 9], [8, 9, 6]])  # entries of P in a row
 
@@ -161,7 +161,8 @@ def bend_texels(
     bent[at, 3:7] = rotation.multiply(turn, channels[:, 3:7])
     bent[at, 7:10] += np.log(np.clip(stretch, 1 / MOST_STRETCH, MOST_STRETCH))
     normal = rotation.to_matrix(_unit(channels[:, 3:7]))[:, :, 2]
-    bent[at[:, None, None], LINEAR] = _mirrored(SIGNS * channels[:, LINEAR], normal, rotation.rotate(turn, normal)) * SIGNS
+    sheen = _mirrored(SIGNS * channels[:, LINEAR], normal, rotation.rotate(turn, normal))
+    bent[at[:, None, None], LINEAR] = SIGNS * sheen
     return bent
 
 
@@ -231,7 +232,7 @@ def _polar(before: Frames, after: Frames) -> tuple[Array, Array]:
 
 
 def _mirrored(
-    light: Array,  # [N, 3 xyz, C] what mirrors send out that lie across the normals
+    light: Array,  # [N, 3 xyz, C] that mirrors across the normals send out
     normals: Array,  # [N, 3] unit
     turned: Array,  # [N, 3] unit, the normals when the mirrors turn
 ) -> Array:
