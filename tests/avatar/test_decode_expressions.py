@@ -26,6 +26,7 @@ from mua.kernels.expressions import (
 from mua.pose.resample import resample
 from mua.pose.skeleton import Pose
 from mua.rig.expressions import Expressions
+from mua.texture.sh import linear
 
 ROUNDING = 1e-12  # of numbers about 1, in float64
 SINGLE = 1e-4  # in float32: triangles whose height is a tenth of their sides, of 24-bit coordinates
@@ -40,6 +41,16 @@ def map_of(before: Array, after: Array) -> Array:
         return np.column_stack([first, second, normal / np.linalg.norm(normal)])
 
     return np.linalg.solve(columns(before).T, columns(after).T).T
+
+
+def reflection(normal: Array) -> Array:
+    """Half a turn [3, 3] about the normal: from where a mirror's light comes to where it goes."""
+    return Rotation.from_rotvec(np.pi * normal).as_matrix()
+
+
+def gradients(texel: Array) -> Array:
+    """How a texel's red, green and blue [3, 3] change with the direction in which they are seen."""
+    return linear(texel[None, 11:])[0]
 
 
 def soup(rng: np.random.Generator, count: int) -> tuple[Array, Array, Array]:
@@ -73,7 +84,9 @@ def assert_bends_as_solved(dtype: type, bound: float) -> None:
         assert np.linalg.norm(found[3:7]) == pytest.approx(np.linalg.norm(texel[3:7]), rel=bound)
         expected = texel[7:10] + np.log(np.clip(stretch, 1 / MOST_STRETCH, MOST_STRETCH))
         np.testing.assert_allclose(found[7:10], expected, rtol=0, atol=10 * bound)
-        np.testing.assert_array_equal(found[10:], texel[10:])
+        np.testing.assert_array_equal(found[10:14], texel[10:14])
+        mirrored = [reflection(turn @ own[:, 2]) @ reflection(own[:, 2]) @ gradient for gradient in gradients(texel)]
+        np.testing.assert_allclose(gradients(found), mirrored, rtol=0, atol=10 * bound)
 
 
 def test_a_texel_follows_the_polar_rotation_and_the_stretch_of_a_lone_triangle() -> None:

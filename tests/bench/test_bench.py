@@ -71,7 +71,7 @@ def test_a_face_costs_what_its_entries_and_the_texels_in_reach_need() -> None:
     vertices = bound("BendVertices", read | {"vertex_bends": 24 * 99}, vertex_count=8)
     assert cost(vertices) == Work(bytes=32 + 36 + 72 + 144 + (16 + 24) * 8, flops=18 * work.ADD_BEND + 8 * 12)
     reach = work.gathered(vertices=8, triangles=6, texels=5)
-    assert reach == Work(bytes=(12 + 16 + 24) * 8 + 12 * 6 + (8 + 8) * 5, flops=5 * work.BEND_TEXEL)
+    assert reach == Work(bytes=(12 + 16 + 24) * 8 + 12 * 6 + (8 + 8 + 16) * 5, flops=5 * work.BEND_TEXEL)
 
 
 def projected(texels: int, vertices: int, faces: int, eyes: int) -> Bound:

@@ -106,6 +106,11 @@ def summed(turns: list[Array]) -> Array:
     return total
 
 
+def mirror(n: Array, a: Array) -> Array:
+    """12.4: 2 (n . a) n - a"""
+    return np.asarray(2 * (n @ a) * n - a)
+
+
 def bend(texture: Array, corners: Array, barycentrics: Array, faces: Array, v: Array, m: Array) -> Array:
     """12.4: T [N, 23] of texels with these corners [N, 3] and barycentrics [N, 3]."""
     bent, turned, still = texture.copy(), vertices(faces, v, m), (1.0, np.array([1.0, 0, 0, 0]), np.eye(3))
@@ -120,4 +125,8 @@ def bend(texture: Array, corners: Array, barycentrics: Array, faces: Array, v: A
         bent[e, 3:7] = multiply(g, texture[e, 3:7])
         stretch = np.linalg.norm(p @ columns(normalise(texture[e, 3:7])), axis=0)
         bent[e, 7:10] += np.log(np.clip(stretch, 1 / LARGEST, LARGEST))
+        normal = columns(normalise(texture[e, 3:7]))[:, 2]
+        for c in range(3):
+            a = texture[e, [20 + c, 14 + c, 17 + c]] * [-1, -1, 1]
+            bent[e, [20 + c, 14 + c, 17 + c]] = [-1, -1, 1] * mirror(columns(g) @ normal, mirror(normal, a))
     return bent

@@ -8,9 +8,10 @@ from dwt_cases import taps, upsampling_bound
 from skinned_cases import ULP
 from stored import store
 
+from mua import rotation
 from mua.arrays import Array
-from mua.channels import APPEARANCE
-from mua.kernels.expressions import STILL, Targets, bend_texels, by_vertex
+from mua.channels import APPEARANCE, SH_C0
+from mua.kernels.expressions import MIDDLE, STILL, Targets, bend_texels, by_vertex, mirror_texels
 from mua.kernels.inverse_dwt import pack_planes, texel_tiles, unpack_planes, upsample_texels, upsampling_taps
 
 SIDES = (0.2, 2.0)  # metres, of edges and heights before and after
@@ -29,6 +30,10 @@ LIT_BOUND = 8 * ULP * 8
 # Offsets of at most 2 metres, quaternions of at most 2 and logarithms, of 48 products and sums whose roundings partly
 # cancel: on every device so far 32 sufficed.
 TURNED_BOUND = 2 * 32 * ULP
+# The normals by which light is mirrored are as exact as turned offsets of 1 metre, and their products of such vectors.
+MIRROR = 2 * np.sqrt(3)
+# Gradients of colours, of at most 2.5 each way, turned: 16 products and sums of at most 10.
+MIRRORED_BOUND = 16 * ULP * 10
 # What the channels lost before, in rotations of length 0.5 and stretches that differ by MOST_BENT squared.
 BEFORE = 2 * MOST_BENT**2
 GEOMETRY = APPEARANCE.start  # channels
@@ -124,16 +129,18 @@ class BentTexels:
     buffers: dict[str, Array]  # but for the channels
     plain: Array  # geometry before it bends
     expected: Array
+    mirrors: Array  # [N, 4] quaternions that it leaves of texels in reach
+    reached: Array  # [N] bool
     bends: Array  # [N] bool
     bound: float
 
 
-def bent_texels(rng: np.random.Generator, count: int) -> BentTexels:
+def bent_texels(rng: np.random.Generator, count: int, reach: float = 0.8) -> BentTexels:
     """Some out of reach, some between corners that do not bend or do not count, some that stretch beyond all bounds."""
     side, vertices = int(np.ceil(np.sqrt(count))), 2 * count + 3
     lo, texture = taps("bior4.4")[0], random_texture(rng, count)
     ll = pack_planes(0.02 * rng.normal(size=(GEOMETRY, side, side)))
-    texels, reached = np.sort(rng.permutation(4 * side * side)[:count]), rng.random(count) < 0.8
+    texels, reached = np.sort(rng.permutation(4 * side * side)[:count]), rng.random(count) < reach
     static = store(np.ascontiguousarray(texture[:, :GEOMETRY].T), "f32", rows=GEOMETRY)
     filtered, delay = upsampling_taps(lo, 1)
     rows, faces = rounded(random_bends(rng, vertices, still=count + 2)), rng.integers(0, vertices, (count + 4, 3))
@@ -148,6 +155,7 @@ def bent_texels(rng: np.random.Generator, count: int) -> BentTexels:
     corners = faces[triangles]
     bent = bend_texels(rows.astype(float), corners, barycentrics, plain)
     light = np.einsum("nk,nk->n", barycentrics, gains[corners].astype(float))
+    normal, turned = (rotation.to_matrix(rotation.normalize(a[:, 3:7]))[:, :, 2] for a in (plain, bent))
     plain, bent = (np.column_stack([a[:, :GEOMETRY], g]) for a, g in ((plain, 0 * light), (bent, light)))
     largest = float(np.abs(unpack_planes(ll)).max(initial=0))
     tiles = texel_tiles(texels, 2 * side, reached)
@@ -164,8 +172,55 @@ def bent_texels(rng: np.random.Generator, count: int) -> BentTexels:
         },
         plain=plain,
         expected=np.where(reached[:, None], bent, plain),
+        mirrors=np.column_stack([np.sum(normal * turned, axis=1), np.cross(normal, turned)]),
+        reached=reached,
         bends=reached & (rows[:, 11] > 0)[corners].any(axis=1) & (rows[:, 10] > 0)[corners].any(axis=1),
         bound=TURNED_BOUND + BEFORE * upsampling_bound(filtered, largest, float(np.abs(static.values).max(initial=0))),
+    )
+
+
+@dataclass(frozen=True)
+class LitTexels:
+    """A dispatch of LightTexels, and the appearance [N, 12] that it leaves."""
+
+    groups: tuple[int, int, int]
+    constants: dict[str, Any]
+    buffers: dict[str, Array]
+    expected: Array
+    lit: Array  # [N] bool
+    bounds: Array  # [12]
+
+
+def lit_texels(rng: np.random.Generator, count: int) -> LitTexels:
+    """Some out of reach; geometry holds gains, and the first row of appearance how its light turns."""
+    side, channels = int(np.ceil(np.sqrt(count))), 23 - GEOMETRY
+    lo, texture = taps("bior4.4")[0], np.clip(random_texture(rng, count)[:, 12:], -4, 4)
+    texture[:, 3:] = np.clip(texture[:, 3:], -2, 2)
+    ll = pack_planes(0.02 * rng.normal(size=(channels, side, side)))
+    texels, reached = np.sort(rng.permutation(4 * side * side)[:count]), rng.random(count) < 0.8
+    static = store(np.ascontiguousarray(texture.T), "f32", rows=channels)
+    filtered, delay = upsampling_taps(lo, 1)
+    before = rng.uniform(-1, 1, (6, count, 4)).astype("<f2")
+    before[3] = random_bends(rng, count)[:, :4]
+    before[3] = rotation.normalize(before[3].astype(float))
+    plain = upsample_texels(unpack_planes(ll).astype(float), lo, 1, texels=texels, static_offset=static.values).T
+    lit = mirror_texels(before[3].astype(float), np.pad(plain, ((0, 0), (GEOMETRY, 0))))[:, GEOMETRY:]
+    lit[:, :3] += before[2, :, 3:].astype(float) * (lit[:, :3] + MIDDLE / SH_C0)
+    lost = upsampling_bound(filtered, float(np.abs(unpack_planes(ll)).max(initial=0)), float(np.abs(texture).max()))
+    tiles = texel_tiles(texels, 2 * side, reached)
+    return LitTexels(
+        groups=(len(tiles), 1, 1),
+        constants={
+            **{"static_offset_layout": static.layout, "channels": channels, "size": side},
+            **{"factor": 2, "reach": len(filtered), "delay": delay, "texel_count": count},
+        },
+        buffers={
+            **{"ll": ll, "upsampling": filtered.astype(np.float32), "tiles": tiles, "static_offset": static.words},
+            "texel_channels": before.view("<u4"),
+        },
+        expected=np.where(reached[:, None], lit, plain),
+        lit=reached,
+        bounds=2 * lost + np.where(np.arange(channels) < 3, LIT_BOUND, MIRRORED_BOUND),
     )
 
 

@@ -3,6 +3,7 @@
 from fault import Fault
 
 UPSAMPLING = "upsample.hlsl"
+BEND = "bend.hlsl"
 
 DECODING = {
     "mlp_matmul": [
@@ -157,11 +158,6 @@ DECODING = {
         Fault("appearance written over geometry", "first_row + group.z", "group.z"),
         Fault("static offset subtracted", "values[i] + stored(", "values[i] - stored(", UPSAMPLING),
         Fault("static offset of another channel", "(first + i) * texel_count", "first * texel_count", UPSAMPLING),
-        Fault("texels out of reach lit", " && isIn(run.y >> TILE, thread.x)", ""),
-        Fault("lit without a face", "if (lit != 0 && ", "if ("),
-        Fault("all colours lit", " && first == 0", ""),
-        Fault("darker", "batch.xyz += gainOf", "batch.xyz -= gainOf"),
-        Fault("gain of the opacity", "texel_count + texel].y, 1)", "texel_count + texel].y, 0)"),
     ],
     "expressions": [
         Fault("first expression for all", "expressions[i / 2] >> 16", "expressions[0] >> 16"),
@@ -182,14 +178,17 @@ DECODING = {
         ),
         Fault("written past the last triangle", "if (thread.x >= triangle_count)", "if (thread.x > triangle_count)"),
         Fault("corners of another triangle", "corners[3 * thread.x + i]", "corners[i]"),
-        Fault("texels without a splat bent", "if (!isIn(run.y, thread.x))", "if (run.y == 0)"),
-        Fault("texels out of reach bent", "if (isIn(run.y >> TILE, thread.x))", "if (true)"),
+        Fault("texels without a splat bent", "isValid = isIn(run.y, thread.x)", "isValid = run.y != 0"),
+        Fault("texels out of reach bent", "if (bent)", "if (true)"),
+        Fault("texels out of reach lit", "if (lit)", "if (true)"),
+        Fault("darker", "batches[0].xyz + gain *", "batches[0].xyz - gain *"),
+        Fault("gain of the opacity", "texel_count + texel].y, 1)", "texel_count + texel].y, 0)"),
         Fault("another triangle's bend", "3 * (place.x & ~ONE_SIDED)", "3 * (texel & 1)"),
         Fault("one-sided texels lost", "(place.x & ~ONE_SIDED)", "(place.x & 1)"),
         Fault(
             "channels of the first batch alone",
-            "loadBatch(group.x, thread.xy, BATCH)",
-            "loadBatch(group.x, thread.xy, 0)",
+            "loadBatch(tile, thread, BATCH)",
+            "loadBatch(tile, thread, 0)",
         ),
         Fault("static offset of another batch", "texel, BATCH * i)", "texel, BATCH)"),
         Fault("a corner that moves missed", " || any(far[2] != 0);", ";"),
@@ -213,14 +212,14 @@ DECODING = {
         Fault("barycentrics swapped", "place.y & 0xffff, place.y >> 16", "place.y >> 16, place.y & 0xffff"),
         Fault("corners without a say", "length(stretched) / bend.own.x", "length(stretched)"),
         Fault("corners that do not count", "vertex.own.y == WITHOUT_AREA ? 0 : share", "share"),
-        Fault("turned the other way", "float2(along + height, -shear)", "float2(along + height, shear)"),
-        Fault("shear lost", "(after.shear - along * before.shear)", "0 * (after.shear - along * before.shear)"),
-        Fault("stretch of another triangle", "x.xxy * before.x.yzz", "x.xxy * after.x.yzz"),
-        Fault("stretched inversely", "after.height / before.height", "before.height / after.height"),
-        Fault("thickness lost", " + before.normal * before.normal;", ";"),
-        Fault("half turns about another axis", "- z.z, y.z + z.y", "- z.z, y.z - z.y"),
-        Fault("sign of a turn", "y.z - z.y, z.x - x.z", "z.y - y.z, z.x - x.z"),
-        Fault("turned half round", "(found.x < 0 ? -1 : 1) *", "2 *"),
+        Fault("turned the other way", "float2(along + height, -shear)", "float2(along + height, shear)", BEND),
+        Fault("shear lost", "(after.shear - along * before.shear)", "0 * (after.shear - along * before.shear)", BEND),
+        Fault("stretch of another triangle", "x.xxy * before.x.yzz", "x.xxy * after.x.yzz", BEND),
+        Fault("stretched inversely", "after.height / before.height", "before.height / after.height", BEND),
+        Fault("thickness lost", " + before.normal * before.normal;", ";", BEND),
+        Fault("half turns about another axis", "- z.z, y.z + z.y", "- z.z, y.z - z.y", BEND),
+        Fault("sign of a turn", "y.z - z.y, z.x - x.z", "z.y - y.z, z.x - x.z", BEND),
+        Fault("turned half round", "(found.x < 0 ? -1 : 1) *", "2 *", BEND),
         Fault(
             "stretch without bound",
             "clamp(length(stretched) / bend.own.x, 1 / MOST_STRETCH, MOST_STRETCH)",
@@ -229,6 +228,17 @@ DECODING = {
         Fault("scales of another axis", "quaternionRotate(unit, ends[k])", "quaternionRotate(unit, ends[2 - k])"),
         Fault("rotation of any length stretched", "quaternionRotate(unit,", "quaternionRotate(rotation,"),
         Fault("offset not turned", "quaternionRotate(turn, batches[0].xyz)", "batches[0].xyz"),
+        Fault("gradients of colours not turned", "quaternionRotate(mirror,", "quaternionRotate(float4(1, 0, 0, 0),"),
+        Fault("gradients turned as the surface", "float4(dot(axis, turned), cross(axis, turned))", "turn"),
+        Fault(
+            "gradients by another axis",
+            "turned = quaternionRotate(turn, axis)",
+            "turned = quaternionRotate(turn, ends[2])",
+        ),
+        Fault("x of gradients not negative", "float3(-x[k], -y[k], z[k])", "float3(x[k], -y[k], z[k])"),
+        Fault(
+            "gradients of appearance over geometry", "writeTexel(texel, ROWS, mirror)", "writeTexel(texel, 0, mirror)"
+        ),
         Fault("rotations in the wrong order", "Multiply(turn, rotation)", "Multiply(rotation, turn)"),
         Fault("opacity lost", "batches[2].xy += scale.yz;", "batches[2] = float4(batches[2].xy + scale.yz, 0, 0);"),
     ],

@@ -5,11 +5,12 @@ from functools import partial
 import numpy as np
 from bent_cases import (
     BENT_BOUND,
-    LIT_BOUND,
     MEAN_BOUND,
+    MIRROR,
     PER_METRE,
     ROOT_BOUND,
     bent_texels,
+    lit_texels,
     random_stars,
     random_targets,
     triangle_words,
@@ -29,10 +30,9 @@ from splat_rounding import ULP
 from stored import STORAGES, groups, store
 
 from mua.asset.tensors import Element
-from mua.channels import SH_C0
 from mua.kernels.blend_subbands import blend_detail, blend_ll
 from mua.kernels.dq_skinning import blend_vertices
-from mua.kernels.expressions import MIDDLE, bend_triangles, bend_vertices, pack_entries
+from mua.kernels.expressions import bend_triangles, bend_vertices, pack_entries
 from mua.kernels.inverse_dwt import (
     inverse_dwt,
     pack_planes,
@@ -56,7 +56,7 @@ def blend_subbands_cases() -> list[Case]:
 def inverse_dwt_cases() -> list[Case]:
     levels = [_level(name) for name in ("bior4.4", "bior2.2")]
     texels = [_texels_of(storage, levels=n) for storage in STORAGES for n in (1, 2)]
-    return [*levels, *texels, _texels_of("f32", levels=1, lit=True)]
+    return [*levels, *texels]
 
 
 def dq_skinning_cases() -> list[Case]:
@@ -64,7 +64,7 @@ def dq_skinning_cases() -> list[Case]:
 
 
 def expressions_cases() -> list[Case]:
-    return [_targets(), _triangles(), _bent_vertices(), _bent_texels()]
+    return [_targets(), _triangles(), _bent_vertices(), _bent_texels(), _lit_texels()]
 
 
 def _layer(storage: Element, *, relu: int) -> Case:
@@ -169,7 +169,7 @@ def _level(wavelet: str) -> Case:
     )
 
 
-def _texels_of(storage: Element, *, levels: int, lit: bool = False) -> Case:
+def _texels_of(storage: Element, *, levels: int) -> Case:
     channels, rows, size, count, first = 5, 2, 5, 101, 2
     rng = np.random.default_rng(4)
     lo = taps("bior4.4")[0]
@@ -179,27 +179,22 @@ def _texels_of(storage: Element, *, levels: int, lit: bool = False) -> Case:
     texels = np.sort(rng.permutation(side * side)[: min(count, side * side)])
     count = len(texels)
     offset = store(rng.normal(size=(channels, count)), storage, rows=channels)
-    reached, gains = rng.random(count) < 0.7, rng.uniform(-1, 1, (count, 2)).astype("<f2")
-    tiles = texel_tiles(texels, side, reached)
+    tiles = texel_tiles(texels, side, rng.random(count) < 0.7)
     before = np.full((first + rows + 1, count, 2), UNWRITTEN)
-    before[first - 1, :, 1] = gains.view("<u4")[:, 0]
     filtered, delay = upsampling_taps(lo, levels)
     reach, factor = filtered.shape
     exact = upsample_texels(ll.astype(float), lo, levels, texels=texels, static_offset=offset.values)
-    if lit:
-        exact[:3] += np.where(reached, gains[:, 1] * (exact[:3] + MIDDLE / SH_C0), 0)
     padded = np.concatenate([exact, np.zeros((4 * rows - channels, count))])
     found = padded.reshape(rows, 4, count).swapaxes(1, 2)
     bound = upsampling_bound(filtered, float(np.abs(ll).max()), float(np.abs(offset.values).max()))
-    bound = 2 * bound + LIT_BOUND if lit else bound
     return Case(
-        f"{storage}, {levels} levels" + ", lit" * lit,
+        f"{storage}, {levels} levels",
         "UpsampleTexels",
         (len(tiles), 1, rows),
         {
             **{"static_offset_layout": offset.layout, "channels": channels, "size": size},
             **{"factor": factor, "reach": reach, "delay": delay},
-            **{"texel_count": count, "first_row": first, "lit": int(lit)},
+            **{"texel_count": count, "first_row": first},
         },
         {
             **{"ll": packed, "upsampling": filtered.astype(np.float32), "tiles": tiles},
@@ -312,17 +307,38 @@ def _bent_vertices() -> Case:
 
 
 def _bent_texels() -> Case:
-    """Some bend and some do not, within reach and out of it; appearance is not written."""
+    """Some bend and some do not, all within reach; the first row of appearance says how light turns."""
     count = 101
-    bent = bent_texels(np.random.default_rng(8), count)
+    bent = bent_texels(np.random.default_rng(8), count, reach=1)
     return Case(
         "turns of up to 60 degrees",
         "BendTexels",
         bent.groups,
         bent.constants,
-        {**bent.buffers, "texel_channels": np.full((4, count, 2), UNWRITTEN)},
+        {**bent.buffers, "texel_channels": np.full((5, count, 2), UNWRITTEN)},
         (
             halves("texel_channels", bent.expected.reshape(-1, 3, 4).swapaxes(0, 1), bent.bound),
-            Expected("texel_channels", "uint", np.full(2 * count, UNWRITTEN), first=6 * count),
+            halves("texel_channels", bent.mirrors, MIRROR * bent.bound, first=6 * count),
+            Expected("texel_channels", "uint", np.full(2 * count, UNWRITTEN), first=8 * count),
+        ),
+    )
+
+
+def _lit_texels() -> Case:
+    """Some within reach and some not; geometry is not written."""
+    count = 101
+    lit = lit_texels(np.random.default_rng(9), count)
+    expected = lit.expected.reshape(-1, 3, 4).swapaxes(0, 1)
+    return Case(
+        "light that turns and brightens",
+        "LightTexels",
+        lit.groups,
+        lit.constants,
+        lit.buffers,
+        (
+            Expected("texel_channels", "uint", lit.buffers["texel_channels"][:3]),
+            halves("texel_channels", expected[0, :, :2], lit.bounds[0], first=6 * count, period=2),
+            halves("texel_channels", expected[0, :, 2:], lit.bounds[3], first=6 * count + 1, period=2),
+            halves("texel_channels", expected[1:], lit.bounds[3], first=8 * count),
         ),
     )

@@ -7,9 +7,11 @@ import pytest
 from bent_cases import (
     BENT_BOUND,
     MEAN_BOUND,
+    MIRROR,
     PER_METRE,
     ROOT_BOUND,
     bent_texels,
+    lit_texels,
     random_stars,
     random_targets,
     triangle_words,
@@ -149,11 +151,14 @@ def test_vertices_bend_as_the_triangles_about_them(device: Device, count: int) -
 
 @pytest.mark.parametrize("count", COUNTS)
 def test_texels_bend_as_their_corners_and_keep_their_gain(device: Device, count: int) -> None:
-    """Those in reach; all others have the channels without a face. Appearance is not written."""
+    """Those in reach; all others have the channels without a face. Of appearance the first row says how light turns."""
     bent = bent_texels(np.random.default_rng(count), count)
     given = {**bent.buffers, "texel_channels": np.full((6, count, 2), UNWRITTEN)}
     found = run(device, FILE, "BendTexels", bent.groups, given, **bent.constants)["texel_channels"]
-    assert (found[3:] == UNWRITTEN).all()
+    assert (found[4:] == UNWRITTEN).all()
+    assert (found[3, ~bent.reached] == UNWRITTEN).all()
+    mirrors = found[3].view(np.float16).reshape(-1, 4).astype(float)
+    assert (np.abs(mirrors - bent.mirrors)[bent.reached] <= MIRROR * bent.bound + HALF).all()
     own = found[:3].view(np.float16).swapaxes(0, 1).reshape(-1, 12).astype(float)
     expected = bent.expected.copy()
     expected[:, 3:7] *= np.where(np.sum(expected[:, 3:7] * own[:, 3:7], axis=1) < 0, -1, 1)[:, None]
@@ -161,6 +166,17 @@ def test_texels_bend_as_their_corners_and_keep_their_gain(device: Device, count:
     unbent = ~bent.bends
     assert (np.abs(own - bent.plain)[unbent, :11] <= bent.bound + HALF * (1 + np.abs(bent.plain[unbent, :11]))).all()
     assert count < 9 or (np.abs(bent.expected - bent.plain)[bent.bends, :10].max(axis=1) > 0.01).any()
+
+
+@pytest.mark.parametrize("count", COUNTS)
+def test_light_turns_and_brightens_as_it_is_left(device: Device, count: int) -> None:
+    """That of texels in reach; geometry stays bit for bit."""
+    lit = lit_texels(np.random.default_rng(count), count)
+    before = lit.buffers["texel_channels"]
+    found = run(device, FILE, "LightTexels", lit.groups, lit.buffers, **lit.constants)["texel_channels"]
+    np.testing.assert_array_equal(found[:3], before[:3])
+    own = np.ascontiguousarray(found[3:]).view(np.float16).swapaxes(0, 1).reshape(-1, 12).astype(float)
+    assert (np.abs(own - lit.expected) <= lit.bounds + HALF * (1 + np.abs(lit.expected))).all()
 
 
 @pytest.mark.parametrize("storage", ["f32", "i8"])

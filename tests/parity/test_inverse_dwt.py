@@ -5,7 +5,6 @@ from typing import Any
 import numpy as np
 import pytest
 import pywt
-from bent_cases import LIT_BOUND
 from dispatch import run
 from dwt_cases import taps, upsampling_bound
 from packed_splats import assert_halves
@@ -13,9 +12,7 @@ from stored import STORAGES, groups, store
 
 from mua.arrays import Array
 from mua.asset.tensors import Element
-from mua.channels import SH_C0
 from mua.gpu import Device
-from mua.kernels.expressions import MIDDLE
 from mua.kernels.inverse_dwt import (
     BATCH,
     add_static,
@@ -255,9 +252,8 @@ def check_texels(
     storage: Element = "f32",
     first_row: int = 0,
     coarser: int = 0,
-    lit: bool = False,
 ) -> None:
-    """The shader against the reference at `count` valid texels, some in reach of light; nothing else is written."""
+    """The shader against the reference at `count` valid texels; nothing else is written."""
     channels, side, _ = ll.shape
     packed = pack_planes(ll)
     ll = unpack_planes(packed)
@@ -265,11 +261,8 @@ def check_texels(
     rng = np.random.default_rng(count)
     texels = np.sort(rng.permutation(fine * fine)[:count])
     static_offset = store(rng.normal(size=(channels, count)), storage, rows=channels)
-    reached, gains = rng.random(count) < 0.7, rng.uniform(-1, 1, count).astype(np.float16)
     before = np.full((first_row + rows + 1, count, BATCH), UNTOUCHED, np.float16)
-    if first_row:
-        before[first_row - 1, :, 3] = gains
-    tiles = texel_tiles(texels, fine, reached)
+    tiles = texel_tiles(texels, fine, rng.random(count) < 0.7)
     filtered, delay = upsampling_taps(lo, levels, coarser)
     reach, factor = filtered.shape
     found = run(
@@ -285,7 +278,6 @@ def check_texels(
         **{"channels": channels, "size": side, "factor": factor, "reach": reach, "delay": delay},
         texel_count=count,
         first_row=first_row,
-        lit=int(lit),
     )["texel_channels"]
     written = slice(first_row, first_row + rows)
     halves = found[written].swapaxes(1, 2).reshape(BATCH * rows, count)
@@ -293,9 +285,6 @@ def check_texels(
     expected = upsample_texels(ll.astype(float), lo, levels, **kept)
     largest = np.abs(static_offset.values).max(initial=0)
     bound = upsampling_bound(filtered, np.abs(ll).max(initial=0), largest)
-    if lit:
-        expected[:3] += np.where(reached, gains * (expected[:3] + MIDDLE / SH_C0), 0)
-        bound = 2 * bound + LIT_BOUND
     assert_halves(halves[:channels], expected, bound)
     assert not halves[channels:].any()
     np.testing.assert_array_equal(np.delete(found, written, axis=0), np.delete(before, written, axis=0))
@@ -311,14 +300,6 @@ def test_texel_shader_equals_the_reference(
 ) -> None:
     ll = np.random.default_rng(side).normal(size=(channels, side, side)).astype(np.float32)
     check_texels(device, ll, taps("bior4.4")[0], levels, count=count, storage=storage, first_row=2)
-
-
-@pytest.mark.parametrize(("channels", "count"), [(12, 1), (12, 500), (3, 90)])
-def test_texel_shader_brightens_colours_in_reach_by_what_stands_beside_geometry(
-    device: Device, channels: int, count: int
-) -> None:
-    ll = np.random.default_rng(channels).normal(size=(channels, 7, 7)).astype(np.float32)
-    check_texels(device, ll, taps("bior4.4")[0], 2, count=count, first_row=3, lit=True)
 
 
 @pytest.mark.parametrize(("levels", "coarser"), [(1, 1), (2, 1), (2, 2)])

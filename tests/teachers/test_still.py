@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from patches import ONE_JOINT, grid_faces, grid_points
 from scipy.ndimage import map_coordinates
+from scipy.spatial.transform import Rotation
 from tube import HEIGHT, RADIUS, tube
 
 from mua.arrays import Array
@@ -13,6 +14,7 @@ from mua.avatar.camera import orbit
 from mua.avatar.decode import pose_splats
 from mua.avatar.rendering import render_premultiplied
 from mua.channels import SH_C0
+from mua.kernels.expressions import reach_of
 from mua.rig.character import Character, Mesh
 from mua.rig.expressions import Expressions
 from mua.rig.texel_map import build_texel_map
@@ -185,8 +187,9 @@ def test_expressions_move_texels_with_the_surface_in_any_pose() -> None:
         ]
         # Beside the rims, whose texels reach beyond the surface: relief of a few millimetres is not scaled along.
         assert np.quantile(np.abs(places[0] - places[1]), 0.9) < 2e-3
-        moved = np.isin(teacher.rig.mesh.faces, rigged(teacher))
-        far = np.asarray(~moved.any(axis=1))[teacher.rig.texels.triangles]
+        triangles = teacher.rig.texels.triangles
+        far = np.ones(len(triangles), bool)
+        far[reach_of(rigged(teacher), teacher.rig.mesh.faces, triangles).texels[:, 0]] = False
         assert far.any()
         assert np.abs(after.texture[far, :3] - before.texture[far, :3]).max() < 1e-4
 
@@ -202,3 +205,19 @@ def rigged(teacher: StillTeacher) -> Array:
     """The vertices of a template that expressions move."""
     assert teacher.rig.expressions is not None
     return teacher.rig.expressions.vertices
+
+
+def test_an_expression_that_turns_a_figure_turns_what_lies_below_its_surface() -> None:
+    """A tube that lies down: all of its splats turn with it, whatever a fit moved them by."""
+    character, turn = tube(), Rotation.from_euler("xyz", [1.2, 0.3, -0.5])
+    vertices = character.mesh.vertices
+    every = np.arange(len(vertices), dtype=np.int32)
+    offsets = turn.apply(vertices) - vertices
+    lying = Expressions(("lie",), np.array([0, len(every)], np.int32), every, offsets.astype(np.float32))
+    teacher = StillTeacher(replace(character, expressions=lying), texels=TEXELS)
+    corrections = np.zeros((len(teacher.rig.texels.texels), 9), np.float32)
+    corrections[:, :3] = [0.01, 0.02, -0.03]
+    teacher, pose = teacher.corrected(corrections), character.skeleton.bind_pose
+    frames = teacher.frame(pose), teacher.frame(replace(pose, expressions=np.ones(1)))
+    rest, lain = (pose_splats(teacher.rig, frame.mesh, texture=frame.texture, pose=pose) for frame in frames)
+    np.testing.assert_allclose(lain.centres, turn.apply(rest.centres), rtol=0, atol=SINGLE * HEIGHT)

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from measure_faces import BENT, FIXED, RELIT, SENTENCE, STUDENT, SYLLABLE, FaceStudio, Frame, Result, speech
+from measure_faces import BENT, FIXED, RELIT, SENTENCE, STUDENT, SYLLABLE, FaceStudio, Frame, Result, measure, speech
 from synthetic_avatar import synthetic_avatar, with_expressions
 
 from mua.arrays import Array
@@ -44,7 +44,8 @@ def result() -> Result:
     with opened() as context:
         studio = FaceStudio(context, avatar, Stub(avatar), 64)  # type: ignore[arg-type]
         frames: list[Frame] = studio.frames(clip, clip.cut(slice(0, 0)))
-        return Result.of("first", [studio.shot(frame, weights) for frame in frames])
+        (only,) = measure(studio, frames, avatar, np.tile(weights, (len(frames), 1)), each=0)
+    return only
 
 
 def test_student_that_is_its_teacher_differs_in_light_alone(result: Result) -> None:

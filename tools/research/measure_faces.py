@@ -264,9 +264,11 @@ def spoken(avatar: Avatar, clip: Clip, face: Path | None) -> Array:
 
 
 def measure(studio: FaceStudio, frames: Sequence[Frame], avatar: Avatar, sequence: Array, each: int) -> list[Result]:
-    """Speech over all frames, then every expression over `each` of them."""
+    """Speech over all frames, then every expression over `each` of them, if any."""
     shots = [studio.shot(frame, weights) for frame, weights in zip(cycle(frames), sequence, strict=False)]
     results = [Result.of("speech", shots)]
+    if not each:
+        return results
     chosen = [frames[int((i + 0.5) * len(frames) / each)] for i in range(each)]
     for name, weights in zip(avatar.expressions, np.eye(len(avatar.expressions), dtype=np.float32), strict=True):
         results.append(Result.of(name, [studio.shot(frame, weights) for frame in chosen]))
@@ -312,7 +314,7 @@ def main() -> None:
     parser.add_argument("--recording", type=Path, required=True, help="in the work directory of the bake")
     parser.add_argument("--detail", action="append", default=[], help="as the bake was given it")
     parser.add_argument("--face", type=Path, help="facial motion to be the speech")
-    parser.add_argument("--frames", type=int, default=2, help="held-out frames for each expression")
+    parser.add_argument("--frames", type=int, default=2, help="held-out frames for each expression; 0: speech alone")
     parser.add_argument("--size", type=int, default=288, help="pixels along a side of an image")
     parser.add_argument("--json", type=Path, help="writes all figures")
     parser.add_argument("--sheet", type=Path, help="writes an image of the worst five expressions")

@@ -151,16 +151,22 @@ namespace Mua
             {
                 Synthesise(commands, branch, levels - 1);
             }
-            if (isGeometry && channels.IsExpressive)
+            LevelBuffers level = channels.Level;
+            GraphicsBuffer ll = textures[0], texels = channels.TexelChannels;
+            if (!channels.IsExpressive)
+            {
+                int firstRow = isGeometry ? 0 : AppearanceRow;
+                inverseDwt.UpsampleTexels(commands, level, shown, branch.Channels, Size(levels), ll, texels, firstRow);
+            }
+            else if (isGeometry)
             {
                 inverseDwt.BendTexels(
-                    commands, channels.Level, shown, branch.Channels, Size(levels), textures[0], channels.TexelChannels,
-                    avatar.Faces, vertexBends);
-                return;
+                    commands, level, shown, branch.Channels, Size(levels), ll, texels, avatar.Faces, vertexBends);
             }
-            inverseDwt.UpsampleTexels(
-                commands, channels.Level, shown, branch.Channels, Size(levels), textures[0], channels.TexelChannels,
-                isGeometry ? 0 : AppearanceRow, channels.IsExpressive);
+            else
+            {
+                inverseDwt.LightTexels(commands, level, shown, branch.Channels, Size(levels), ll, texels);
+            }
         }
 
         /// <summary>One level with its details, to planes of twice the size.</summary>

@@ -39,6 +39,7 @@ ADD_BEND = 8 + 1 + 10 + 12  # on which side the quaternion lies; area; all of a 
 BEND_TEXEL = 3 * (11 + 2) + 2 * (8 + 12)  # shares of the corners, which of them bend and count; their sum
 BEND_TEXEL += 2 * UNIT_QUATERNION + 30 + 45 + 3 * (6 + 4)  # axes, P of them, logarithms
 BEND_TEXEL += 30 + QUATERNION_PRODUCT + 3 * 3  # offset, rotation, colour
+BEND_TEXEL += 30 + 5 + 9 + 3 * 30  # turned normal, its dot and cross product with the other, gradients of three colours
 PROJECT_EYE = (
     24 + 15 + 24 + 30 + 15 + 18 + 6 + 25 + 12 + 30 + 27
 )  # eye space, slopes, Jacobian J, A = J x axes, A A^T, axes, pixel, box; direction, turned back, SH
@@ -179,10 +180,11 @@ def gathered(vertices: int, triangles: int, texels: int) -> Work:
     """What a face takes beside its dispatches' own buffers, of what is in reach, gathers counted once.
 
     Read are mesh and moves of vertices, before their triangles bend; then bends of vertices, corners of triangles,
-    places of texels and the last half floats of their geometry. Operations are those that bend and light the texels.
+    places of texels and the last half floats of their geometry; how their colours turn is written and read. Operations
+    are those that bend and light the texels.
     """
     moved = ((3 + 4) * FLOAT + BEND) * vertices + 3 * UINT * triangles
-    return Work(moved + (2 * UINT + BATCH * HALF) * texels, texels * BEND_TEXEL)
+    return Work(moved + (2 * UINT + 3 * BATCH * HALF) * texels, texels * BEND_TEXEL)
 
 
 Formula = Callable[[Bound, float], Work]  # work of a dispatch, given the share of the splats that some eye sees
@@ -198,7 +200,8 @@ EXPRESSING: dict[str, Formula] = {  # beside these, where a face moves
     "SumTargets": sum_targets,
     "BendTriangles": bend_triangles,
     "BendVertices": bend_vertices,
-    "BendTexels": upsample_texels,  # of geometry; `gathered` has what is more
+    "BendTexels": upsample_texels,  # `gathered` has what is more
+    "LightTexels": upsample_texels,
 }
 POSING: dict[str, Formula] = {  # in every displayed frame: from there to sorted splats
     "BlendVertices": blend_vertices,

@@ -3,7 +3,8 @@
 A triangle's deformation F = R P takes its two edges to the bent ones and its unit normal to the bent one, so that
 thickness stays. A vertex has the mean of its triangles by area, and a texel what its corners have, so that neighbours
 bend alike: R turns the texel's offset and rotation, and its axes grow as P stretches them (schemas/README.md, section
-12). Texture channels are those of mua.channels.
+12). What of its colour is seen from some sides alone is light that it mirrors, and turns as a mirror on it throws it.
+Texture channels are those of mua.channels.
 """
 
 from dataclasses import dataclass
@@ -18,6 +19,8 @@ LEAST = 1e-5  # metres: a triangle with an edge or a height below it has no fram
 MOST_STRETCH = 20.0  # of an axis, and its inverse the least
 STILL = np.array([1, 0, 0, 0, 1, 1, 1, 0, 0, 0, 1, 0])  # the row of what does not bend
 CONSTANT = slice(APPEARANCE.start, APPEARANCE.start + 3)  # colours that are the same from everywhere
+LINEAR = np.arange(14, 23).reshape(3, 3)[[2, 0, 1]].T  # channels [rgb, xyz] of colours' gradients over the direction
+SIGNS = np.array([-1, -1, 1], np.int8)  # of these channels
 MIDDLE = 0.5  # of colours, where their channels are 0
 LARGEST = np.finfo(np.float16).max
 SYMMETRIC = np.array([[4, 7, 8], [7, 5, 9], [8, 9, 6]])  # entries of P in a row
@@ -161,7 +164,21 @@ def bend_texels(
     bent[at, 0:3] = rotation.rotate(turn, channels[:, 0:3])
     bent[at, 3:7] = rotation.multiply(turn, channels[:, 3:7])
     bent[at, 7:10] += np.log(np.clip(stretch, 1 / MOST_STRETCH, MOST_STRETCH))
+    normal = rotation.to_matrix(_unit(channels[:, 3:7]))[:, :, 2]
+    turned = rotation.rotate(turn, normal)
+    half = np.column_stack([np.sum(normal * turned, axis=1), np.cross(normal, turned)])
+    bent[at] = mirror_texels(half, bent[at])
     return bent
+
+
+def mirror_texels(
+    mirrors: Array,  # [N, 4] quaternions that turn by twice the angle by which the normals do
+    texture: Array,  # [N, 23] raw channels
+) -> Array:
+    """Raw channels [N, 23] where what of the colours depends on the view turns as a mirror turns light."""
+    turned = texture.copy(order="K")
+    turned[:, LINEAR] = SIGNS * rotation.rotate(mirrors[:, None], SIGNS * turned[:, LINEAR])
+    return turned
 
 
 def brighten_texels(

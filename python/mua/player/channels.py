@@ -57,6 +57,7 @@ class ChannelDecoder:
         self._bend_triangles = device.kernel("expressions.compute", "BendTriangles")
         self._bend_vertices = device.kernel("expressions.compute", "BendVertices")
         self._bend_texels = device.kernel("expressions.compute", "BendTexels")
+        self._light_texels = device.kernel("expressions.compute", "LightTexels")
 
     def _create_buffers(self, device: Device) -> None:
         avatar, branches = self.avatar.avatar, (self.avatar.geometry, self.avatar.appearance)
@@ -261,13 +262,17 @@ class ChannelDecoder:
             "delay": upsampling.delay,
             "texel_count": level.splat_count,
         }
-        if is_geometry and channels.expressive:
-            places = {"faces": level.places.faces, "texels": level.places.texels, "vertex_bends": self.vertex_bends}
-            commands.dispatch(self._bend_texels, (level.tile_count, 1, 1), buffers | places, **constants)
+        if channels.expressive:
+            kernel = self._bend_texels if is_geometry else self._light_texels
+            if is_geometry:
+                buffers |= {"faces": level.places.faces, "texels": level.places.texels}
+                buffers |= {"vertex_bends": self.vertex_bends}
+            commands.dispatch(kernel, (level.tile_count, 1, 1), buffers, **constants)
             return
-        constants |= {"first_row": first_row, "lit": int(channels.expressive)}
         batches = groups(branch.channels, BATCH)
-        commands.dispatch(self._upsample_texels, (level.tile_count, 1, batches), buffers, **constants)
+        commands.dispatch(
+            self._upsample_texels, (level.tile_count, 1, batches), buffers, **constants, first_row=first_row
+        )
 
 
 def groups(count: int, size: int) -> int:

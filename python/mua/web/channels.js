@@ -49,20 +49,20 @@ export function synthesis(device, taps) {
   return kernelWithRoom(device, InverseDwt, "filtered", rows * COARSE_TILE);
 }
 
-/** UpsampleTexels or BendTexels, whose groups share the samples of ll that a tile of texels needs. @param {Device} device @param {{factor: number, reach: number}} upsampling */
+/** UpsampleTexels, BendTexels or LightTexels, whose groups share the samples of ll that a tile of texels needs. @param {Device} device @param {{factor: number, reach: number}} upsampling */
 export function upsampler(device, { factor, reach }, shader = UpsampleTexels) {
   const samples = groups(TEXEL_TILE - 1, factor) + reach;
   return kernelWithRoom(device, shader, "upsampled", samples * TEXEL_TILE);
 }
 
-/** The kernels that depend on the avatar, for its finest level. @param {Device} device @param {Avatar} avatar @param {import("./shader.js").Shader} [bending] of one with expressions */
-export function kernelsFor(device, { wavelet, geometry, appearance }, bending) {
+/** The kernels that depend on the avatar, for its finest level. @param {Device} device @param {Avatar} avatar @param {{BendTexels: import("./shader.js").Shader, LightTexels: import("./shader.js").Shader} | null} face of one with expressions */
+export function kernelsFor(device, { wavelet, geometry, appearance }, face) {
   const upsamplings = [geometry, appearance].map(({ details }) =>
     upsamplingTaps(wavelet.recLo, wavelet.levels - details.length),
   );
-  const bent = bending ? [upsampler(device, upsamplings[0], bending)] : [];
-  const all = upsamplings.map((one) => upsampler(device, one));
-  return [synthesis(device, wholeWords(wavelet.recLo).length), ...all, ...bent];
+  const ways = [[UpsampleTexels, UpsampleTexels], ...(face ? [[face.BendTexels, face.LightTexels]] : [])];
+  const all = ways.flatMap((way) => way.map((shader, branch) => upsampler(device, upsamplings[branch], shader)));
+  return [synthesis(device, wholeWords(wavelet.recLo).length), ...all];
 }
 
 /** The buffers between the kernels of a decode, sized once: parts read what the one before left in them. */
@@ -243,14 +243,14 @@ export class ChannelDecoder {
       delay,
       texel_count: level.splatCount,
     };
-    if (expressing && firstRow === 0) {
-      const places = { faces: this.buffers.faces, texels: level.texels, vertex_bends: expressing.buffers.vertex_bends };
-      const bender = upsampler(device, shown.upsampling, expressing.shader);
-      bender.dispatch(pass, [level.tileCount, 1, 1], { ...buffers, ...places }, constants);
+    if (expressing) {
+      const isGeometry = firstRow === 0;
+      const bends = { faces: this.buffers.faces, texels: level.texels, vertex_bends: expressing.buffers.vertex_bends };
+      const kernel = upsampler(device, shown.upsampling, isGeometry ? expressing.bender : expressing.lighter);
+      kernel.dispatch(pass, [level.tileCount, 1, 1], isGeometry ? { ...buffers, ...bends } : buffers, constants);
       return;
     }
-    const batches = groups(branch.channels, BATCH);
-    const own = { ...constants, first_row: firstRow, lit: Number(expressing !== null) };
-    upsampler(device, shown.upsampling).dispatch(pass, [level.tileCount, 1, batches], buffers, own);
+    const [kernel, batches] = [upsampler(device, shown.upsampling), groups(branch.channels, BATCH)];
+    kernel.dispatch(pass, [level.tileCount, 1, batches], buffers, { ...constants, first_row: firstRow });
   }
 }

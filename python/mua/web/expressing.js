@@ -3,7 +3,7 @@
 
 import { FLOAT, groups } from "./channels.js";
 import { kernelsOf } from "./kernel.js";
-import { BendTexels, BendTriangles, BendVertices, SumTargets } from "./wgsl/expressions.js";
+import { BendTexels, BendTriangles, BendVertices, LightTexels, SumTargets } from "./wgsl/expressions.js";
 
 /** @typedef {import("./device.js").Memory} Memory */
 /** @typedef {import("./channels.js").ChannelSet} ChannelSet */
@@ -14,7 +14,7 @@ const BEND = 24; // bytes of a bent triangle or vertex
 /** @type {typeof import("./rules.js").heldBack | null} */
 let heldBack = null; // fetched for avatars that have rules
 export const KERNELS = { SumTargets, BendTriangles, BendVertices };
-export { BendTexels };
+export { BendTexels, LightTexels };
 
 /** Fetch what else the expressions of an avatar need. */
 export async function fetchRules(/** @type {Avatar} */ { targets }) {
@@ -27,7 +27,8 @@ export class Expressing {
     const reach = reachOf(targets.vertices, avatar.template.faces);
     this.memory = memory;
     this.rules = avatar.targets.rules;
-    this.shader = BendTexels;
+    this.bender = BendTexels;
+    this.lighter = LightTexels;
     this.reached = reach.triangles;
     this.moving = targets.vertices;
     this.triangleCount = reach.corners.length / 3;

@@ -99,7 +99,7 @@ export class Renderer {
     await expressing?.fetchRules(avatar);
     if (this.destroyed) throw new AvatarError(AWAY); // lost meanwhile
     const needed = [
-      ...kernelsFor(this.device, avatar, expressing?.BendTexels),
+      ...kernelsFor(this.device, avatar, expressing),
       ...Object.values(kernelsOf(this.device, expressing?.KERNELS ?? {})),
     ];
     const kernels = Promise.all([this.decoding, compiled(needed)]);

@@ -3,10 +3,11 @@ using UnityEngine.Rendering;
 
 namespace Mua
 {
-    /// <summary>Wavelet synthesis: ComputeShaders/inverse_dwt.compute, and BendTexels of expressions.compute.</summary>
+    /// <summary>Wavelet synthesis: ComputeShaders/inverse_dwt.compute, and the texels of a face: expressions.compute.</summary>
     internal sealed class InverseDwt
     {
         private const string File = "inverse_dwt.compute";
+        private const string ExpressionsFile = "expressions.compute";
         private const int CoarseTile = 16; // samples along a side that a group doubles
         private const int ChannelBatch = 4; // of a group of UpsampleTexels
 
@@ -28,18 +29,18 @@ namespace Mua
         private static readonly int TexelChannels = Shader.PropertyToID("texel_channels");
         private static readonly int TexelCount = Shader.PropertyToID("texel_count");
         private static readonly int FirstRow = Shader.PropertyToID("first_row");
-        private static readonly int Lit = Shader.PropertyToID("lit");
         private static readonly int Faces = Shader.PropertyToID("faces");
         private static readonly int Texels = Shader.PropertyToID("texels");
         private static readonly int VertexBends = Shader.PropertyToID("vertex_bends");
 
-        private readonly Kernel full, upsampleTexels, bendTexels;
+        private readonly Kernel full, upsampleTexels, bendTexels, lightTexels;
 
         public InverseDwt(ComputeShader shader, ComputeShader expressions)
         {
             full = new Kernel(shader, File, "InverseDwt");
             upsampleTexels = new Kernel(shader, File, "UpsampleTexels");
-            bendTexels = new Kernel(expressions, "expressions.compute", "BendTexels");
+            bendTexels = new Kernel(expressions, ExpressionsFile, "BendTexels");
+            lightTexels = new Kernel(expressions, ExpressionsFile, "LightTexels");
         }
 
         /// <summary>One level, from planes of `size` to twice that.</summary>
@@ -61,15 +62,14 @@ namespace Mua
 
         /// <summary>
         /// All levels without details, from planes of `size`, plus the static offset, at the valid texels, to rows from
-        /// `firstRow` on; appearance may be lit as BendTexels left it.
+        /// `firstRow` on.
         /// </summary>
         public void UpsampleTexels(
             CommandBuffer commands, LevelBuffers level, BranchLevel shown, int channels, int size, GraphicsBuffer ll,
-            GraphicsBuffer texelChannels, int firstRow, bool isLit)
+            GraphicsBuffer texelChannels, int firstRow)
         {
             SetUpsampling(commands, upsampleTexels, level, shown, channels, size, ll, texelChannels);
             upsampleTexels.Set(commands, FirstRow, firstRow);
-            upsampleTexels.Set(commands, Lit, isLit ? 1 : 0);
             upsampleTexels.Dispatch(commands, level.TileCount, 1, Kernel.Groups(channels, ChannelBatch));
         }
 
@@ -83,6 +83,15 @@ namespace Mua
             bendTexels.Set(commands, Texels, level.Texels);
             bendTexels.Set(commands, VertexBends, vertexBends);
             bendTexels.Dispatch(commands, level.TileCount, 1, 1);
+        }
+
+        /// <summary>The same of appearance, where the texels in reach are lit as BendTexels left it.</summary>
+        public void LightTexels(
+            CommandBuffer commands, LevelBuffers level, BranchLevel shown, int channels, int size, GraphicsBuffer ll,
+            GraphicsBuffer texelChannels)
+        {
+            SetUpsampling(commands, lightTexels, level, shown, channels, size, ll, texelChannels);
+            lightTexels.Dispatch(commands, level.TileCount, 1, 1);
         }
 
         private static void SetUpsampling(

@@ -75,10 +75,13 @@ class StillTeacher:
             coarse = coarse + face[self._template]
             moved = moved + self._skinned.carried(joints, face)
             canonical = transform(rotation.dual_inverse(dual), moved)
-            turn = _upside(rotation.multiply(turn, self._surface(bind + face)[0]))
+            face_turn = self._surface(bind + face)[0]
+            turn = _upside(rotation.multiply(turn, face_turn))
             strain = self._surface(moved)[1]
         light = self._light(joints, dual, moved, turn)
         texture = self._texels.texture(canonical - bind, coarse, turn=turn, moved=moved, strain=strain, light=light)
+        if face is not None:
+            texture[:, :3] += self._texels.leaning(face_turn)
         mesh = (self.rig.mesh.vertices + coarse).astype(np.float32)
         places = self._texels.places
         straighten(texture, self.rig, joints=joints, mesh=mesh, moved=moved, canonical=canonical, places=places)

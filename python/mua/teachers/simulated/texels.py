@@ -5,6 +5,7 @@ from copy import copy
 import numpy as np
 from scipy import sparse
 
+from mua import rotation
 from mua.arrays import Array
 from mua.channels import CHANNELS, SH_C0, SH_C1
 from mua.rig.character import Character
@@ -105,6 +106,14 @@ class SurfaceTexels:
         for first, (axis, sign) in zip((14, 17, 20), LINEAR, strict=True):
             np.multiply(tint, sign * slope[axis], out=planes[first : first + 3])
         return planes.T
+
+    def leaning(
+        self,
+        turn: Array,  # [V, 4] of the surface about its vertices; unit, w >= 0
+    ) -> Array:
+        """How far [N, 3] texels move that lie aside of the surface where it turns."""
+        relief = self._relief.T
+        return rotation.rotate(rotation.normalize(self._at_texels(turn).T), relief) - relief
 
     def places(
         self,

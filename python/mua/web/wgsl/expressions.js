@@ -838,6 +838,57 @@ fn withStatic_0( values_0 : vec4<f32>,  texel_0 : u32,  first_1 : u32) -> vec4<f
     return whole_0;
 }
 
+fn upsampleRows_0( tile_5 : u32,  thread_2 : vec2<u32>,  rows_0 : ptr<function, array<vec4<f32>, i32(3)>>,  texel_1 : ptr<function, u32>,  inReach_0 : ptr<function, bool>) -> bool
+{
+    loadBatch_0(tile_5, thread_2, u32(0));
+    workgroupBarrier();
+    var _S31 : vec4<f32> = batchAt_0(tile_5, thread_2);
+    (*rows_0)[i32(0)] = _S31;
+    workgroupBarrier();
+    loadBatch_0(tile_5, thread_2, u32(4));
+    workgroupBarrier();
+    var _S32 : vec4<f32> = batchAt_0(tile_5, thread_2);
+    (*rows_0)[i32(1)] = _S32;
+    workgroupBarrier();
+    loadBatch_0(tile_5, thread_2, u32(8));
+    workgroupBarrier();
+    var _S33 : vec4<f32> = batchAt_0(tile_5, thread_2);
+    (*rows_0)[i32(2)] = _S33;
+    var run_1 : vec2<u32> = tileRow_0(tile_5, thread_2.y);
+    var _S34 : u32 = run_1.y;
+    var _S35 : u32 = thread_2.x;
+    var isValid_0 : bool = isIn_0(_S34, _S35);
+    var i_2 : u32;
+    if(isValid_0)
+    {
+        i_2 = texelOf_0(run_1, _S35);
+    }
+    else
+    {
+        i_2 = u32(0);
+    }
+    (*texel_1) = i_2;
+    (*inReach_0) = isIn_0((_S34 >> (u32(16))), _S35);
+    if(isValid_0)
+    {
+        i_2 = u32(0);
+        for(;;)
+        {
+            if(i_2 < u32(3))
+            {
+            }
+            else
+            {
+                break;
+            }
+            var _S36 : vec4<f32> = withStatic_0((*rows_0)[i_2], (*texel_1), u32(4) * i_2);
+            (*rows_0)[i_2] = _S36;
+            i_2 = i_2 + u32(1);
+        }
+    }
+    return isValid_0;
+}
+
 fn unpackHalves_0( word_3 : u32) -> vec2<f32>
 {
     return vec2<f32>(halfAt_0(word_3, u32(0)), halfAt_0(word_3, u32(1)));
@@ -878,91 +929,513 @@ fn shareOf_0( vertex_1 : Bend_0,  share_0 : f32) -> Bend_0
 {
     var part_0 : Bend_0;
     part_0.turn_0 = vec4<f32>(share_0) * vertex_1.turn_0;
-    var _S31 : vec3<f32> = vec3<f32>(share_0);
-    part_0.diagonal_0 = _S31 * vertex_1.diagonal_0;
-    part_0.others_0 = _S31 * vertex_1.others_0;
-    var _S32 : f32;
+    var _S37 : vec3<f32> = vec3<f32>(share_0);
+    part_0.diagonal_0 = _S37 * vertex_1.diagonal_0;
+    part_0.others_0 = _S37 * vertex_1.others_0;
+    var _S38 : f32;
     if((vertex_1.own_0.y) == 2.0f)
     {
-        _S32 = 0.0f;
+        _S38 = 0.0f;
     }
     else
     {
-        _S32 = share_0;
+        _S38 = share_0;
     }
-    part_0.own_0 = vec2<f32>(_S32, share_0 * vertex_1.own_0.x);
+    part_0.own_0 = vec2<f32>(_S38, share_0 * vertex_1.own_0.x);
     return part_0;
 }
 
 fn addTurn_0( sum_4 : vec4<f32>,  turn_1 : vec4<f32>) -> vec4<f32>
 {
-    var _S33 : i32;
+    var _S39 : i32;
     if((dot(sum_4, turn_1)) < 0.0f)
     {
-        _S33 = i32(-1);
+        _S39 = i32(-1);
     }
     else
     {
-        _S33 = i32(1);
+        _S39 = i32(1);
     }
-    return sum_4 + vec4<f32>(f32(_S33)) * turn_1;
+    return sum_4 + vec4<f32>(f32(_S39)) * turn_1;
 }
 
-fn bendAt_0( texel_1 : u32,  bends_0 : ptr<function, bool>) -> Bend_0
+fn bendAt_0( texel_2 : u32,  bends_0 : ptr<function, bool>) -> Bend_0
 {
-    var place_0 : vec2<u32> = texels_0[texel_1];
+    var place_0 : vec2<u32> = texels_0[texel_2];
     var face_0 : u32 = u32(3) * (((place_0.x) & (u32(2147483647))));
-    var _S34 : u32 = place_0.y;
-    var shares_0 : vec2<f32> = vec2<f32>(f32((_S34 & (u32(65535)))), f32((_S34 >> (u32(16))))) / vec2<f32>(65535.0f);
+    var _S40 : u32 = place_0.y;
+    var shares_0 : vec2<f32> = vec2<f32>(f32((_S40 & (u32(65535)))), f32((_S40 >> (u32(16))))) / vec2<f32>(65535.0f);
     var barycentric_0 : vec3<f32> = vec3<f32>(shares_0, max(1.0f - shares_0.x - shares_0.y, 0.0f));
     var corner_1 : Bend_0 = vertexBend_0(faces_0[face_0]);
     var sum_5 : Bend_0 = shareOf_0(corner_1, barycentric_0.x);
     (*bends_0) = (corner_1.own_0.y) != 0.0f;
-    var i_2 : u32 = u32(1);
+    var i_3 : u32 = u32(1);
     for(;;)
     {
-        if(i_2 < u32(3))
+        if(i_3 < u32(3))
         {
         }
         else
         {
             break;
         }
-        var corner_2 : Bend_0 = vertexBend_0(faces_0[face_0 + i_2]);
-        var part_1 : Bend_0 = shareOf_0(corner_2, barycentric_0[i_2]);
+        var corner_2 : Bend_0 = vertexBend_0(faces_0[face_0 + i_3]);
+        var part_1 : Bend_0 = shareOf_0(corner_2, barycentric_0[i_3]);
         sum_5.turn_0 = addTurn_0(sum_5.turn_0, part_1.turn_0);
         sum_5.diagonal_0 = sum_5.diagonal_0 + part_1.diagonal_0;
         sum_5.others_0 = sum_5.others_0 + part_1.others_0;
         sum_5.own_0 = sum_5.own_0 + part_1.own_0;
-        var _S35 : bool;
+        var _S41 : bool;
         if((*bends_0))
         {
-            _S35 = true;
+            _S41 = true;
         }
         else
         {
-            _S35 = (corner_2.own_0.y) != 0.0f;
+            _S41 = (corner_2.own_0.y) != 0.0f;
         }
-        (*bends_0) = _S35;
-        i_2 = i_2 + u32(1);
+        (*bends_0) = _S41;
+        i_3 = i_3 + u32(1);
     }
     return sum_5;
 }
 
 fn quaternionRotate_0( q_0 : vec4<f32>,  v_0 : vec3<f32>) -> vec3<f32>
 {
-    var _S36 : vec3<f32> = q_0.yzw;
-    var t_0 : vec3<f32> = vec3<f32>(2.0f) * cross(_S36, v_0);
-    return v_0 + vec3<f32>(q_0.x) * t_0 + cross(_S36, t_0);
+    var _S42 : vec3<f32> = q_0.yzw;
+    var t_0 : vec3<f32> = vec3<f32>(2.0f) * cross(_S42, v_0);
+    return v_0 + vec3<f32>(q_0.x) * t_0 + cross(_S42, t_0);
 }
 
 fn quaternionMultiply_0( a_1 : vec4<f32>,  b_1 : vec4<f32>) -> vec4<f32>
 {
-    var _S37 : f32 = a_1.x;
-    var _S38 : f32 = b_1.x;
-    var _S39 : vec3<f32> = a_1.yzw;
-    var _S40 : vec3<f32> = b_1.yzw;
-    return vec4<f32>(_S37 * _S38 - dot(_S39, _S40), vec3<f32>(_S37) * _S40 + vec3<f32>(_S38) * _S39 + cross(_S39, _S40));
+    var _S43 : f32 = a_1.x;
+    var _S44 : f32 = b_1.x;
+    var _S45 : vec3<f32> = a_1.yzw;
+    var _S46 : vec3<f32> = b_1.yzw;
+    return vec4<f32>(_S43 * _S44 - dot(_S45, _S46), vec3<f32>(_S43) * _S46 + vec3<f32>(_S44) * _S45 + cross(_S45, _S46));
+}
+
+fn packHalves_0( values_1 : vec2<f32>) -> u32
+{
+    return ((pack2x16float(vec2f((values_1.x),0.0))) | ((((pack2x16float(vec2f((values_1.y),0.0))) << (u32(16))))));
+}
+
+fn packBounded_0( values_2 : vec2<f32>) -> u32
+{
+    return packHalves_0(clamp(values_2, vec2<f32>(-65504.0f), vec2<f32>(65504.0f)));
+}
+
+fn writeTexel_0( texel_3 : u32,  row_3 : u32,  values_3 : vec4<f32>)
+{
+    texel_channels_0[row_3 * Constants_0.texel_count_0 + texel_3] = vec2<u32>(packBounded_0(values_3.xy), packBounded_0(values_3.zw));
+    return;
+}
+
+fn writeRows_0( texel_4 : u32,  first_2 : u32,  rows_1 : array<vec4<f32>, i32(3)>)
+{
+    var i_4 : u32 = u32(0);
+    for(;;)
+    {
+        if(i_4 < u32(3))
+        {
+        }
+        else
+        {
+            break;
+        }
+        writeTexel_0(texel_4, first_2 + i_4, rows_1[i_4]);
+        i_4 = i_4 + u32(1);
+    }
+    return;
+}
+
+@compute
+@workgroup_size(16, 16, 1)
+fn BendTexels(@builtin(workgroup_id) group_0 : vec3<u32>, @builtin(local_invocation_id) thread_3 : vec3<u32>)
+{
+    var batches_0 : array<vec4<f32>, i32(3)>;
+    var texel_5 : u32;
+    var bent_0 : bool;
+    var _S47 : bool = upsampleRows_0(group_0.x, thread_3.xy, &(batches_0), &(texel_5), &(bent_0));
+    if(!_S47)
+    {
+        return;
+    }
+    if(bent_0)
+    {
+        var bends_1 : bool;
+        var bend_1 : Bend_0 = bendAt_0(texel_5, &(bends_1));
+        const _S48 : vec4<f32> = vec4<f32>(1.0f, 0.0f, 0.0f, 0.0f);
+        batches_0[i32(2)][i32(3)] = bend_1.own_0.y;
+        var _S49 : bool;
+        if(bends_1)
+        {
+            _S49 = (bend_1.own_0.x) > 0.0f;
+        }
+        else
+        {
+            _S49 = false;
+        }
+        var mirror_0 : vec4<f32>;
+        if(_S49)
+        {
+            var turn_2 : vec4<f32> = bend_1.turn_0 / vec4<f32>(max(length(bend_1.turn_0), 1.17549435082228751e-38f));
+            var rotation_0 : vec4<f32> = vec4<f32>(batches_0[i32(0)].w, batches_0[i32(1)].xyz);
+            var _S50 : vec4<f32> = rotation_0 / vec4<f32>(max(length(rotation_0), 1.17549435082228751e-38f));
+            var _S51 : vec3<f32> = vec3<f32>(bend_1.diagonal_0.x, bend_1.others_0.xy);
+            var _S52 : vec3<f32> = vec3<f32>(bend_1.others_0.x, bend_1.diagonal_0.y, bend_1.others_0.z);
+            var _S53 : vec3<f32> = vec3<f32>(bend_1.others_0.yz, bend_1.diagonal_0.z);
+            var _S54 : array<vec3<f32>, i32(3)> = array<vec3<f32>, i32(3)>( vec3<f32>(1.0f, 0.0f, 0.0f), vec3<f32>(0.0f, 1.0f, 0.0f), vec3<f32>(0.0f, 0.0f, 1.0f) );
+            var _S55 : vec3<f32> = vec3<f32>(vec3<i32>(i32(0)));
+            var scale_0 : vec3<f32> = _S55;
+            var axis_0 : vec3<f32> = _S55;
+            var k_0 : u32 = u32(0);
+            for(;;)
+            {
+                if(k_0 < u32(3))
+                {
+                }
+                else
+                {
+                    break;
+                }
+                var axis_1 : vec3<f32> = quaternionRotate_0(_S50, _S54[k_0]);
+                scale_0[k_0] = log(clamp(length(vec3<f32>(axis_1.x) * _S51 + vec3<f32>(axis_1.y) * _S52 + vec3<f32>(axis_1.z) * _S53) / bend_1.own_0.x, 0.05000000074505806f, 20.0f));
+                var _S56 : u32 = k_0 + u32(1);
+                axis_0 = axis_1;
+                k_0 = _S56;
+            }
+            var turned_0 : vec3<f32> = quaternionRotate_0(turn_2, axis_0);
+            var _S57 : vec4<f32> = vec4<f32>(dot(axis_0, turned_0), cross(axis_0, turned_0));
+            var rotation_1 : vec4<f32> = quaternionMultiply_0(turn_2, rotation_0);
+            batches_0[i32(0)] = vec4<f32>(quaternionRotate_0(turn_2, batches_0[i32(0)].xyz), rotation_1.x);
+            batches_0[i32(1)] = vec4<f32>(rotation_1.yzw, batches_0[i32(1)].w + scale_0.x);
+            var _S58 : vec2<f32> = batches_0[i32(2)].xy + scale_0.yz;
+            batches_0[i32(2)].x = _S58.x;
+            batches_0[i32(2)].y = _S58.y;
+            mirror_0 = _S57;
+        }
+        else
+        {
+            mirror_0 = _S48;
+        }
+        writeTexel_0(texel_5, u32(3), mirror_0);
+    }
+    writeRows_0(texel_5, u32(0), batches_0);
+    return;
+}
+
+`,
+};
+
+/** @type {import("../shader.js").Shader} */
+export const LightTexels = {
+  ...{"stage": "comp", "entry": "LightTexels", "buffers": [{"name": "ll", "binding": 7, "read_only": true, "scalar": "uint", "stride": 4}, {"name": "upsampling", "binding": 8, "read_only": true, "scalar": "float", "stride": 4}, {"name": "tiles", "binding": 9, "read_only": true, "scalar": "uint", "stride": 8}, {"name": "static_offset", "binding": 10, "read_only": true, "scalar": "uint", "stride": 4}, {"name": "texel_channels", "binding": 17, "read_only": false, "scalar": "uint", "stride": 8}], "constants": [{"name": "static_offset_layout", "offset": 0, "scalar": "uint", "shape": [3], "strides": [4], "used": true}, {"name": "vertex_count", "offset": 12, "scalar": "uint", "shape": [], "strides": [], "used": false}, {"name": "triangle_count", "offset": 16, "scalar": "uint", "shape": [], "strides": [], "used": false}, {"name": "channels", "offset": 20, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "size", "offset": 24, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "factor", "offset": 28, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "reach", "offset": 32, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "delay", "offset": 36, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "texel_count", "offset": 40, "scalar": "uint", "shape": [], "strides": [], "used": true}], "constants_binding": 18, "threads": [16, 16, 1]},
+  code: `struct SLANG_ParameterGroup_Constants_std140_0
+{
+    @align(16) static_offset_layout_0 : vec3<u32>,
+    @align(4) vertex_count_0 : u32,
+    @align(16) triangle_count_0 : u32,
+    @align(4) channels_0 : u32,
+    @align(8) size_0 : u32,
+    @align(4) factor_0 : u32,
+    @align(16) reach_0 : u32,
+    @align(4) delay_0 : u32,
+    @align(8) texel_count_0 : u32,
+};
+
+@binding(18) @group(0) var<uniform> Constants_0 : SLANG_ParameterGroup_Constants_std140_0;
+@binding(9) @group(0) var<storage, read> tiles_0 : array<vec2<u32>>;
+
+@binding(7) @group(0) var<storage, read> ll_0 : array<u32>;
+
+@binding(8) @group(0) var<storage, read> upsampling_0 : array<f32>;
+
+@binding(10) @group(0) var<storage, read> static_offset_0 : array<u32>;
+
+@binding(17) @group(0) var<storage, read_write> texel_channels_0 : array<vec2<u32>>;
+
+fn cornerOf_0( tile_0 : u32) -> vec2<u32>
+{
+    return vec2<u32>(u32(16)) * tiles_0[u32(17) * tile_0];
+}
+
+fn newestSample_0( position_0 : u32) -> u32
+{
+    var _S1 : u32 = (position_0 + Constants_0.delay_0) / Constants_0.factor_0;
+    return _S1;
+}
+
+fn firstSample_0( tile_1 : u32) -> u32
+{
+    var _S2 : u32 = newestSample_0(cornerOf_0(tile_1).y);
+    return _S2;
+}
+
+var<workgroup> upsampled_0 : array<vec4<f32>, i32(672)>;
+
+fn rowWords_0( size_1 : u32) -> u32
+{
+    return (size_1 + u32(1)) / u32(2);
+}
+
+fn phase_0( position_1 : u32) -> u32
+{
+    var _S3 : u32 = (position_1 + Constants_0.delay_0) % Constants_0.factor_0;
+    return _S3;
+}
+
+fn halfAt_0( word_0 : u32,  lane_0 : u32) -> f32
+{
+    return (unpack2x16float(((((word_0 >> ((u32(16) * lane_0)))) & (u32(65535))))).x);
+}
+
+fn olderSample_0( sample_0 : u32) -> u32
+{
+    var _S4 : u32;
+    if(sample_0 == u32(0))
+    {
+        _S4 = Constants_0.size_0;
+    }
+    else
+    {
+        _S4 = sample_0;
+    }
+    return _S4 - u32(1);
+}
+
+fn sampleAt_0( _S5 : u32,  _S6 : u32) -> f32
+{
+    return halfAt_0(ll_0[_S5 + _S6 / u32(2)], (_S6 & (u32(1))));
+}
+
+fn upsampleRow_0( planes_0 : vec4<u32>,  row_0 : u32,  column_0 : u32) -> vec4<f32>
+{
+    var _S7 : vec4<u32> = (planes_0 * vec4<u32>(Constants_0.size_0) + vec4<u32>(row_0)) * vec4<u32>(rowWords_0(Constants_0.size_0));
+    var _S8 : u32 = newestSample_0(column_0);
+    var _S9 : u32 = _S8 % Constants_0.size_0;
+    var _S10 : u32 = phase_0(column_0);
+    var _S11 : vec4<f32> = vec4<f32>(vec4<i32>(i32(0)));
+    var older_0 : u32 = _S9;
+    var j_0 : u32 = u32(0);
+    var tap_0 : u32 = _S10;
+    var sum_0 : vec4<f32> = _S11;
+    for(;;)
+    {
+        if(j_0 < (Constants_0.reach_0))
+        {
+        }
+        else
+        {
+            break;
+        }
+        var sum_1 : vec4<f32> = sum_0 + vec4<f32>(upsampling_0[tap_0]) * vec4<f32>(sampleAt_0(_S7.x, older_0), sampleAt_0(_S7.y, older_0), sampleAt_0(_S7.z, older_0), sampleAt_0(_S7.w, older_0));
+        var tap_1 : u32 = tap_0 + Constants_0.factor_0;
+        var _S12 : u32 = olderSample_0(older_0);
+        var _S13 : u32 = j_0 + u32(1);
+        older_0 = _S12;
+        j_0 = _S13;
+        tap_0 = tap_1;
+        sum_0 = sum_1;
+    }
+    return sum_0;
+}
+
+fn loadBatch_0( tile_2 : u32,  thread_0 : vec2<u32>,  first_0 : u32)
+{
+    var _S14 : vec4<u32> = min(vec4<u32>(first_0) + vec4<u32>(u32(0), u32(1), u32(2), u32(3)), vec4<u32>((Constants_0.channels_0 - u32(1))));
+    var corner_0 : vec2<u32> = cornerOf_0(tile_2);
+    var before_0 : u32 = firstSample_0(tile_2);
+    var _S15 : u32 = newestSample_0(corner_0.y + u32(16) - u32(1));
+    var _S16 : u32 = _S15 - before_0 + Constants_0.reach_0;
+    var i_0 : u32 = thread_0.y;
+    for(;;)
+    {
+        if(i_0 < _S16)
+        {
+        }
+        else
+        {
+            break;
+        }
+        var row_1 : u32 = (before_0 + i_0 + Constants_0.reach_0 * Constants_0.size_0 - (Constants_0.reach_0 - u32(1))) % Constants_0.size_0;
+        var _S17 : u32 = thread_0.x;
+        var _S18 : vec4<f32> = upsampleRow_0(_S14, row_1, corner_0.x + _S17);
+        upsampled_0[i_0 * u32(16) + _S17] = _S18;
+        i_0 = i_0 + u32(16);
+    }
+    return;
+}
+
+fn upsampleColumn_0( newest_0 : u32,  tap_2 : u32,  column_1 : u32) -> vec4<f32>
+{
+    var _S19 : vec4<f32> = vec4<f32>(vec4<i32>(i32(0)));
+    var j_1 : u32 = u32(0);
+    var sum_2 : vec4<f32> = _S19;
+    for(;;)
+    {
+        if(j_1 < (Constants_0.reach_0))
+        {
+        }
+        else
+        {
+            break;
+        }
+        var sum_3 : vec4<f32> = sum_2 + vec4<f32>(upsampling_0[Constants_0.factor_0 * j_1 + tap_2]) * upsampled_0[(newest_0 - j_1) * u32(16) + column_1];
+        j_1 = j_1 + u32(1);
+        sum_2 = sum_3;
+    }
+    return sum_2;
+}
+
+fn batchAt_0( tile_3 : u32,  thread_1 : vec2<u32>) -> vec4<f32>
+{
+    var position_2 : u32 = cornerOf_0(tile_3).y + thread_1.y;
+    var _S20 : u32 = newestSample_0(position_2);
+    var _S21 : u32 = firstSample_0(tile_3);
+    var newest_1 : u32 = _S20 - _S21 + Constants_0.reach_0 - u32(1);
+    var _S22 : u32 = phase_0(position_2);
+    return upsampleColumn_0(newest_1, _S22, thread_1.x);
+}
+
+fn tileRow_0( tile_4 : u32,  row_2 : u32) -> vec2<u32>
+{
+    return tiles_0[u32(17) * tile_4 + u32(1) + row_2];
+}
+
+fn isIn_0( columns_0 : u32,  column_2 : u32) -> bool
+{
+    return ((((columns_0 >> (column_2))) & (u32(1)))) != u32(0);
+}
+
+fn texelOf_0( run_0 : vec2<u32>,  column_3 : u32) -> u32
+{
+    return run_0.x + countOneBits(((run_0.y) & ((((u32(1) << (column_3))) - u32(1)))));
+}
+
+fn byteAt_0( word_1 : u32,  lane_1 : u32) -> i32
+{
+    return (i32((word_1 << ((u32(24) - u32(8) * lane_1)))) >> (u32(24)));
+}
+
+fn stored_0( _S23 : vec3<u32>,  _S24 : u32) -> f32
+{
+    var _S25 : u32 = _S23.x;
+    var word_2 : u32 = static_offset_0[(_S24 >> (_S25))];
+    var lane_2 : u32 = (_S24 & ((((u32(1) << (_S25))) - u32(1))));
+    var value_0 : f32;
+    if(_S25 == u32(0))
+    {
+        value_0 = (bitcast<f32>(((word_2 | (lane_2)))));
+    }
+    else
+    {
+        if(_S25 == u32(1))
+        {
+            value_0 = halfAt_0(word_2, lane_2);
+        }
+        else
+        {
+            var _S26 : f32 = f32(byteAt_0(word_2, lane_2));
+            var _S27 : u32 = _S23.z;
+            var _S28 : u32 = _S24 / _S23.y;
+            value_0 = _S26 * (bitcast<f32>((static_offset_0[_S27 + _S28])));
+        }
+    }
+    return value_0;
+}
+
+fn withStatic_0( values_0 : vec4<f32>,  texel_0 : u32,  first_1 : u32) -> vec4<f32>
+{
+    var whole_0 : vec4<f32> = vec4<f32>(vec4<i32>(i32(0)));
+    var i_1 : u32 = u32(0);
+    for(;;)
+    {
+        if(i_1 < u32(4))
+        {
+        }
+        else
+        {
+            break;
+        }
+        var _S29 : u32 = first_1 + i_1;
+        if(_S29 < (Constants_0.channels_0))
+        {
+            var _S30 : f32 = stored_0(Constants_0.static_offset_layout_0, _S29 * Constants_0.texel_count_0 + texel_0);
+            whole_0[i_1] = values_0[i_1] + _S30;
+        }
+        i_1 = i_1 + u32(1);
+    }
+    return whole_0;
+}
+
+fn upsampleRows_0( tile_5 : u32,  thread_2 : vec2<u32>,  rows_0 : ptr<function, array<vec4<f32>, i32(3)>>,  texel_1 : ptr<function, u32>,  inReach_0 : ptr<function, bool>) -> bool
+{
+    loadBatch_0(tile_5, thread_2, u32(0));
+    workgroupBarrier();
+    var _S31 : vec4<f32> = batchAt_0(tile_5, thread_2);
+    (*rows_0)[i32(0)] = _S31;
+    workgroupBarrier();
+    loadBatch_0(tile_5, thread_2, u32(4));
+    workgroupBarrier();
+    var _S32 : vec4<f32> = batchAt_0(tile_5, thread_2);
+    (*rows_0)[i32(1)] = _S32;
+    workgroupBarrier();
+    loadBatch_0(tile_5, thread_2, u32(8));
+    workgroupBarrier();
+    var _S33 : vec4<f32> = batchAt_0(tile_5, thread_2);
+    (*rows_0)[i32(2)] = _S33;
+    var run_1 : vec2<u32> = tileRow_0(tile_5, thread_2.y);
+    var _S34 : u32 = run_1.y;
+    var _S35 : u32 = thread_2.x;
+    var isValid_0 : bool = isIn_0(_S34, _S35);
+    var i_2 : u32;
+    if(isValid_0)
+    {
+        i_2 = texelOf_0(run_1, _S35);
+    }
+    else
+    {
+        i_2 = u32(0);
+    }
+    (*texel_1) = i_2;
+    (*inReach_0) = isIn_0((_S34 >> (u32(16))), _S35);
+    if(isValid_0)
+    {
+        i_2 = u32(0);
+        for(;;)
+        {
+            if(i_2 < u32(3))
+            {
+            }
+            else
+            {
+                break;
+            }
+            var _S36 : vec4<f32> = withStatic_0((*rows_0)[i_2], (*texel_1), u32(4) * i_2);
+            (*rows_0)[i_2] = _S36;
+            i_2 = i_2 + u32(1);
+        }
+    }
+    return isValid_0;
+}
+
+fn unpackHalves_0( word_3 : u32) -> vec2<f32>
+{
+    return vec2<f32>(halfAt_0(word_3, u32(0)), halfAt_0(word_3, u32(1)));
+}
+
+fn unpackFour_0( words_0 : vec2<u32>) -> vec4<f32>
+{
+    return vec4<f32>(unpackHalves_0(words_0.x), unpackHalves_0(words_0.y));
+}
+
+fn quaternionRotate_0( q_0 : vec4<f32>,  v_0 : vec3<f32>) -> vec3<f32>
+{
+    var _S37 : vec3<f32> = q_0.yzw;
+    var t_0 : vec3<f32> = vec3<f32>(2.0f) * cross(_S37, v_0);
+    return v_0 + vec3<f32>(q_0.x) * t_0 + cross(_S37, t_0);
 }
 
 fn packHalves_0( values_1 : vec2<f32>) -> u32
@@ -981,35 +1454,8 @@ fn writeTexel_0( texel_2 : u32,  row_3 : u32,  values_3 : vec4<f32>)
     return;
 }
 
-@compute
-@workgroup_size(16, 16, 1)
-fn BendTexels(@builtin(workgroup_id) group_0 : vec3<u32>, @builtin(local_invocation_id) thread_2 : vec3<u32>)
+fn writeRows_0( texel_3 : u32,  first_2 : u32,  rows_1 : array<vec4<f32>, i32(3)>)
 {
-    var _S41 : u32 = group_0.x;
-    var _S42 : vec2<u32> = thread_2.xy;
-    loadBatch_0(_S41, _S42, u32(0));
-    workgroupBarrier();
-    var batches_0 : array<vec4<f32>, i32(3)>;
-    var _S43 : vec4<f32> = batchAt_0(_S41, _S42);
-    batches_0[i32(0)] = _S43;
-    workgroupBarrier();
-    loadBatch_0(_S41, _S42, u32(4));
-    workgroupBarrier();
-    var _S44 : vec4<f32> = batchAt_0(_S41, _S42);
-    batches_0[i32(1)] = _S44;
-    workgroupBarrier();
-    loadBatch_0(_S41, _S42, u32(8));
-    workgroupBarrier();
-    var _S45 : vec4<f32> = batchAt_0(_S41, _S42);
-    batches_0[i32(2)] = _S45;
-    var run_1 : vec2<u32> = tileRow_0(_S41, thread_2.y);
-    var _S46 : u32 = run_1.y;
-    var _S47 : u32 = thread_2.x;
-    if(!isIn_0(_S46, _S47))
-    {
-        return;
-    }
-    var texel_3 : u32 = texelOf_0(run_1, _S47);
     var i_3 : u32 = u32(0);
     for(;;)
     {
@@ -1020,70 +1466,52 @@ fn BendTexels(@builtin(workgroup_id) group_0 : vec3<u32>, @builtin(local_invocat
         {
             break;
         }
-        var _S48 : vec4<f32> = withStatic_0(batches_0[i_3], texel_3, u32(4) * i_3);
-        batches_0[i_3] = _S48;
+        writeTexel_0(texel_3, first_2 + i_3, rows_1[i_3]);
         i_3 = i_3 + u32(1);
     }
-    var row_4 : u32;
-    if(isIn_0((_S46 >> (u32(16))), _S47))
+    return;
+}
+
+@compute
+@workgroup_size(16, 16, 1)
+fn LightTexels(@builtin(workgroup_id) group_0 : vec3<u32>, @builtin(local_invocation_id) thread_3 : vec3<u32>)
+{
+    var batches_0 : array<vec4<f32>, i32(3)>;
+    var texel_4 : u32;
+    var lit_0 : bool;
+    var _S38 : bool = upsampleRows_0(group_0.x, thread_3.xy, &(batches_0), &(texel_4), &(lit_0));
+    if(!_S38)
     {
-        var bends_1 : bool;
-        var bend_1 : Bend_0 = bendAt_0(texel_3, &(bends_1));
-        batches_0[i32(2)][i32(3)] = bend_1.own_0.y;
-        var _S49 : bool;
-        if(bends_1)
+        return;
+    }
+    if(lit_0)
+    {
+        var _S39 : vec4<f32> = unpackFour_0(texel_channels_0[u32(3) * Constants_0.texel_count_0 + texel_4]);
+        var gain_0 : f32 = halfAt_0(texel_channels_0[u32(2) * Constants_0.texel_count_0 + texel_4].y, u32(1));
+        var y_0 : vec3<f32> = vec3<f32>(batches_0[i32(0)].w, batches_0[i32(1)].xy);
+        var z_0 : vec3<f32> = vec3<f32>(batches_0[i32(1)].zw, batches_0[i32(2)].x);
+        var x_0 : vec3<f32> = batches_0[i32(2)].yzw;
+        var k_0 : u32 = u32(0);
+        for(;;)
         {
-            _S49 = (bend_1.own_0.x) > 0.0f;
-        }
-        else
-        {
-            _S49 = false;
-        }
-        if(_S49)
-        {
-            var turn_2 : vec4<f32> = bend_1.turn_0 / vec4<f32>(max(length(bend_1.turn_0), 1.17549435082228751e-38f));
-            var rotation_0 : vec4<f32> = vec4<f32>(batches_0[i32(0)].w, batches_0[i32(1)].xyz);
-            var _S50 : vec4<f32> = rotation_0 / vec4<f32>(max(length(rotation_0), 1.17549435082228751e-38f));
-            var _S51 : vec3<f32> = vec3<f32>(bend_1.diagonal_0.x, bend_1.others_0.xy);
-            var _S52 : vec3<f32> = vec3<f32>(bend_1.others_0.x, bend_1.diagonal_0.y, bend_1.others_0.z);
-            var _S53 : vec3<f32> = vec3<f32>(bend_1.others_0.yz, bend_1.diagonal_0.z);
-            var _S54 : array<vec3<f32>, i32(3)> = array<vec3<f32>, i32(3)>( vec3<f32>(1.0f, 0.0f, 0.0f), vec3<f32>(0.0f, 1.0f, 0.0f), vec3<f32>(0.0f, 0.0f, 1.0f) );
-            var scale_0 : vec3<f32> = vec3<f32>(vec3<i32>(i32(0)));
-            row_4 = u32(0);
-            for(;;)
+            if(k_0 < u32(3))
             {
-                if(row_4 < u32(3))
-                {
-                }
-                else
-                {
-                    break;
-                }
-                var axis_0 : vec3<f32> = quaternionRotate_0(_S50, _S54[row_4]);
-                scale_0[row_4] = log(clamp(length(vec3<f32>(axis_0.x) * _S51 + vec3<f32>(axis_0.y) * _S52 + vec3<f32>(axis_0.z) * _S53) / bend_1.own_0.x, 0.05000000074505806f, 20.0f));
-                row_4 = row_4 + u32(1);
             }
-            var rotation_1 : vec4<f32> = quaternionMultiply_0(turn_2, rotation_0);
-            batches_0[i32(0)] = vec4<f32>(quaternionRotate_0(turn_2, batches_0[i32(0)].xyz), rotation_1.x);
-            batches_0[i32(1)] = vec4<f32>(rotation_1.yzw, batches_0[i32(1)].w + scale_0.x);
-            var _S55 : vec2<f32> = batches_0[i32(2)].xy + scale_0.yz;
-            batches_0[i32(2)].x = _S55.x;
-            batches_0[i32(2)].y = _S55.y;
+            else
+            {
+                break;
+            }
+            var turned_0 : vec3<f32> = quaternionRotate_0(_S39, vec3<f32>(- x_0[k_0], - y_0[k_0], z_0[k_0]));
+            x_0[k_0] = - turned_0.x;
+            y_0[k_0] = - turned_0.y;
+            z_0[k_0] = turned_0.z;
+            k_0 = k_0 + u32(1);
         }
+        batches_0[i32(0)] = vec4<f32>(batches_0[i32(0)].xyz + vec3<f32>(gain_0) * (batches_0[i32(0)].xyz + vec3<f32>(1.77245378494262695f)), y_0.x);
+        batches_0[i32(1)] = vec4<f32>(y_0.yz, z_0.xy);
+        batches_0[i32(2)] = vec4<f32>(z_0.z, x_0);
     }
-    row_4 = u32(0);
-    for(;;)
-    {
-        if(row_4 < u32(3))
-        {
-        }
-        else
-        {
-            break;
-        }
-        writeTexel_0(texel_3, row_4, batches_0[row_4]);
-        row_4 = row_4 + u32(1);
-    }
+    writeRows_0(texel_4, u32(3), batches_0);
     return;
 }
 

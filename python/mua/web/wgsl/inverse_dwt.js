@@ -2,7 +2,7 @@
 
 /** @type {import("../shader.js").Shader} */
 export const InverseDwt = {
-  ...{"stage": "comp", "entry": "InverseDwt", "buffers": [{"name": "ll", "binding": 0, "read_only": true, "scalar": "uint", "stride": 4}, {"name": "details", "binding": 1, "read_only": true, "scalar": "uint", "stride": 4}, {"name": "rec_lo", "binding": 2, "read_only": true, "scalar": "float", "stride": 4}, {"name": "rec_hi", "binding": 3, "read_only": true, "scalar": "float", "stride": 4}, {"name": "fine", "binding": 7, "read_only": false, "scalar": "uint", "stride": 4}], "constants": [{"name": "static_offset_layout", "offset": 0, "scalar": "uint", "shape": [3], "strides": [4], "used": false}, {"name": "channels", "offset": 12, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "size", "offset": 16, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "taps", "offset": 20, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "factor", "offset": 24, "scalar": "uint", "shape": [], "strides": [], "used": false}, {"name": "reach", "offset": 28, "scalar": "uint", "shape": [], "strides": [], "used": false}, {"name": "delay", "offset": 32, "scalar": "uint", "shape": [], "strides": [], "used": false}, {"name": "texel_count", "offset": 36, "scalar": "uint", "shape": [], "strides": [], "used": false}, {"name": "first_row", "offset": 40, "scalar": "uint", "shape": [], "strides": [], "used": false}, {"name": "lit", "offset": 44, "scalar": "uint", "shape": [], "strides": [], "used": false}], "constants_binding": 9, "threads": [16, 16, 1]},
+  ...{"stage": "comp", "entry": "InverseDwt", "buffers": [{"name": "ll", "binding": 0, "read_only": true, "scalar": "uint", "stride": 4}, {"name": "details", "binding": 1, "read_only": true, "scalar": "uint", "stride": 4}, {"name": "rec_lo", "binding": 2, "read_only": true, "scalar": "float", "stride": 4}, {"name": "rec_hi", "binding": 3, "read_only": true, "scalar": "float", "stride": 4}, {"name": "fine", "binding": 7, "read_only": false, "scalar": "uint", "stride": 4}], "constants": [{"name": "static_offset_layout", "offset": 0, "scalar": "uint", "shape": [3], "strides": [4], "used": false}, {"name": "channels", "offset": 12, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "size", "offset": 16, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "taps", "offset": 20, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "factor", "offset": 24, "scalar": "uint", "shape": [], "strides": [], "used": false}, {"name": "reach", "offset": 28, "scalar": "uint", "shape": [], "strides": [], "used": false}, {"name": "delay", "offset": 32, "scalar": "uint", "shape": [], "strides": [], "used": false}, {"name": "texel_count", "offset": 36, "scalar": "uint", "shape": [], "strides": [], "used": false}, {"name": "first_row", "offset": 40, "scalar": "uint", "shape": [], "strides": [], "used": false}], "constants_binding": 9, "threads": [16, 16, 1]},
   code: `struct SLANG_ParameterGroup_Constants_std140_0
 {
     @align(16) static_offset_layout_0 : vec3<u32>,
@@ -14,7 +14,6 @@ export const InverseDwt = {
     @align(16) delay_0 : u32,
     @align(4) texel_count_0 : u32,
     @align(8) first_row_0 : u32,
-    @align(4) lit_0 : u32,
 };
 
 @binding(9) @group(0) var<uniform> Constants_0 : SLANG_ParameterGroup_Constants_std140_0;
@@ -296,7 +295,7 @@ fn InverseDwt(@builtin(global_invocation_id) id_0 : vec3<u32>, @builtin(workgrou
 
 /** @type {import("../shader.js").Shader} */
 export const UpsampleTexels = {
-  ...{"stage": "comp", "entry": "UpsampleTexels", "buffers": [{"name": "ll", "binding": 0, "read_only": true, "scalar": "uint", "stride": 4}, {"name": "upsampling", "binding": 4, "read_only": true, "scalar": "float", "stride": 4}, {"name": "tiles", "binding": 5, "read_only": true, "scalar": "uint", "stride": 8}, {"name": "static_offset", "binding": 6, "read_only": true, "scalar": "uint", "stride": 4}, {"name": "texel_channels", "binding": 8, "read_only": false, "scalar": "uint", "stride": 8}], "constants": [{"name": "static_offset_layout", "offset": 0, "scalar": "uint", "shape": [3], "strides": [4], "used": true}, {"name": "channels", "offset": 12, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "size", "offset": 16, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "taps", "offset": 20, "scalar": "uint", "shape": [], "strides": [], "used": false}, {"name": "factor", "offset": 24, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "reach", "offset": 28, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "delay", "offset": 32, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "texel_count", "offset": 36, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "first_row", "offset": 40, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "lit", "offset": 44, "scalar": "uint", "shape": [], "strides": [], "used": true}], "constants_binding": 9, "threads": [16, 16, 1]},
+  ...{"stage": "comp", "entry": "UpsampleTexels", "buffers": [{"name": "ll", "binding": 0, "read_only": true, "scalar": "uint", "stride": 4}, {"name": "upsampling", "binding": 4, "read_only": true, "scalar": "float", "stride": 4}, {"name": "tiles", "binding": 5, "read_only": true, "scalar": "uint", "stride": 8}, {"name": "static_offset", "binding": 6, "read_only": true, "scalar": "uint", "stride": 4}, {"name": "texel_channels", "binding": 8, "read_only": false, "scalar": "uint", "stride": 8}], "constants": [{"name": "static_offset_layout", "offset": 0, "scalar": "uint", "shape": [3], "strides": [4], "used": true}, {"name": "channels", "offset": 12, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "size", "offset": 16, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "taps", "offset": 20, "scalar": "uint", "shape": [], "strides": [], "used": false}, {"name": "factor", "offset": 24, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "reach", "offset": 28, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "delay", "offset": 32, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "texel_count", "offset": 36, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "first_row", "offset": 40, "scalar": "uint", "shape": [], "strides": [], "used": true}], "constants_binding": 9, "threads": [16, 16, 1]},
   code: `struct SLANG_ParameterGroup_Constants_std140_0
 {
     @align(16) static_offset_layout_0 : vec3<u32>,
@@ -308,7 +307,6 @@ export const UpsampleTexels = {
     @align(16) delay_0 : u32,
     @align(4) texel_count_0 : u32,
     @align(8) first_row_0 : u32,
-    @align(4) lit_0 : u32,
 };
 
 @binding(9) @group(0) var<uniform> Constants_0 : SLANG_ParameterGroup_Constants_std140_0;
@@ -536,11 +534,6 @@ fn withStatic_0( values_0 : vec4<f32>,  texel_0 : u32,  first_1 : u32) -> vec4<f
     return whole_0;
 }
 
-fn gainOf_0( texel_1 : u32) -> f32
-{
-    return halfAt_0(texel_channels_0[(Constants_0.first_row_0 - u32(1)) * Constants_0.texel_count_0 + texel_1].y, u32(1));
-}
-
 fn packHalves_0( values_1 : vec2<f32>) -> u32
 {
     return ((pack2x16float(vec2f((values_1.x),0.0))) | ((((pack2x16float(vec2f((values_1.y),0.0))) << (u32(16))))));
@@ -551,9 +544,9 @@ fn packBounded_0( values_2 : vec2<f32>) -> u32
     return packHalves_0(clamp(values_2, vec2<f32>(-65504.0f), vec2<f32>(65504.0f)));
 }
 
-fn writeTexel_0( texel_2 : u32,  row_3 : u32,  values_3 : vec4<f32>)
+fn writeTexel_0( texel_1 : u32,  row_3 : u32,  values_3 : vec4<f32>)
 {
-    texel_channels_0[row_3 * Constants_0.texel_count_0 + texel_2] = vec2<u32>(packBounded_0(values_3.xy), packBounded_0(values_3.zw));
+    texel_channels_0[row_3 * Constants_0.texel_count_0 + texel_1] = vec2<u32>(packBounded_0(values_3.xy), packBounded_0(values_3.zw));
     return;
 }
 
@@ -568,41 +561,16 @@ fn UpsampleTexels(@builtin(workgroup_id) group_0 : vec3<u32>, @builtin(local_inv
     loadBatch_0(_S32, _S33, first_2);
     workgroupBarrier();
     var run_1 : vec2<u32> = tileRow_0(_S32, thread_2.y);
-    var _S34 : u32 = run_1.y;
-    var _S35 : u32 = thread_2.x;
-    if(!isIn_0(_S34, _S35))
+    var _S34 : u32 = thread_2.x;
+    if(!isIn_0(run_1.y, _S34))
     {
         return;
     }
-    var texel_3 : u32 = texelOf_0(run_1, _S35);
+    var texel_2 : u32 = texelOf_0(run_1, _S34);
+    var _S35 : u32 = Constants_0.first_row_0 + _S31;
     var _S36 : vec4<f32> = batchAt_0(_S32, _S33);
-    var _S37 : vec4<f32> = withStatic_0(_S36, texel_3, first_2);
-    var batch_0 : vec4<f32> = _S37;
-    var _S38 : bool;
-    if((Constants_0.lit_0) != u32(0))
-    {
-        _S38 = first_2 == u32(0);
-    }
-    else
-    {
-        _S38 = false;
-    }
-    if(_S38)
-    {
-        _S38 = isIn_0((_S34 >> (u32(16))), _S35);
-    }
-    else
-    {
-        _S38 = false;
-    }
-    if(_S38)
-    {
-        var _S39 : vec3<f32> = batch_0.xyz + vec3<f32>(gainOf_0(texel_3)) * (batch_0.xyz + vec3<f32>(1.77245378494262695f));
-        batch_0.x = _S39.x;
-        batch_0.y = _S39.y;
-        batch_0.z = _S39.z;
-    }
-    writeTexel_0(texel_3, Constants_0.first_row_0 + _S31, batch_0);
+    var _S37 : vec4<f32> = withStatic_0(_S36, texel_2, first_2);
+    writeTexel_0(texel_2, _S35, _S37);
     return;
 }
 
