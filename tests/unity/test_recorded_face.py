@@ -26,7 +26,8 @@ PLACE = "0 0 0 0 0 0 1 1"
 LEAST_SEEN = 0.75  # of the splats
 MESH = FRAME_ORDER.index("MlpMatmulTransposed") + 1
 FACE_ORDER = [*FRAME_ORDER[:MESH], "SumTargets", "BendTriangles", "BendVertices"]
-FACE_ORDER += ["InverseDwt", "BendTexels", *FRAME_ORDER[MESH + 2 :]]
+FACE_ORDER += ["InverseDwt", "BendTexels"]
+FACE_ORDER += ["LightTexels" if kernel == "UpsampleTexels" else kernel for kernel in FRAME_ORDER[MESH + 2 :]]
 
 
 @pytest.mark.parametrize(("storage", "change"), [("f32", lambda avatar: avatar), ("i8", with_rules)])
