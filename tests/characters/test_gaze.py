@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 from mua.arrays import Array
 from mua.characters.expression_file import read_expression_names, write_expression_names
 from mua.characters.gaze import GAZE
-from mua.characters.read import read_character, read_surfaces
+from mua.characters.read import read_surfaces
 from mua.errors import InputError
 from mua.motion.load import load_motions
 from mua.motion.read import read_motion
@@ -66,7 +66,7 @@ def avatar(*, eyes: bool = False, share: float = 1.0, **changes: Any) -> Glb:
 
 
 def expressions(path: Path) -> Expressions:
-    held = read_character(path, atlas_size=64).expressions
+    held = read_surfaces(path).expressions
     assert held is not None
     return held
 
@@ -180,7 +180,7 @@ def test_a_file_of_names_that_a_check_wrote_is_taken(tmp_path: Path) -> None:
 def test_broken_rules_are_a_sentence(tmp_path: Path, changes: dict[str, Any], sentence: str) -> None:
     path = avatar(eyes=True, **changes).save(tmp_path / "hero.vrm")
     with pytest.raises(InputError, match=sentence):
-        read_character(path, atlas_size=64)
+        read_surfaces(path)
 
 
 def test_a_vrm_animation_looks_where_its_node_is_turned(tmp_path: Path) -> None:
@@ -198,17 +198,18 @@ def test_a_vrm_animation_looks_where_its_node_is_turned(tmp_path: Path) -> None:
     found = dict(zip(source.expressions, source.clip.expressions.T, strict=True))
     np.testing.assert_allclose(found["lookLeft"][[0, 15, 30]], [0, 0.5, 0], atol=FLOAT_BOUND)
     np.testing.assert_allclose(found["lookUp"][[0, 15, 30]], [0, 0, 0.5], atol=FLOAT_BOUND)
-    character = read_character(avatar(eyes=True, lookAt=LOOK_AT).save(tmp_path / "hero.vrm"), atlas_size=64)
+    character = read_surfaces(avatar(eyes=True, lookAt=LOOK_AT).save(tmp_path / "hero.vrm"))
+    assert character.expressions is not None
     (loaded,) = load_motions(
         tmp_path / "look.vrma",
         character.skeleton,
         mapping=None,
         rate=30.0,
         refuse=False,
-        face=character.expression_names,
+        face=character.expressions.names,
     )
     assert loaded.clip.expressions is not None
-    weights = dict(zip(character.expression_names, loaded.clip.expressions[15], strict=True))
+    weights = dict(zip(character.expressions.names, loaded.clip.expressions[15], strict=True))
     assert {name: round(float(weight), 6) for name, weight in weights.items() if weight > FLOAT_BOUND} == {
         "eyeLookOutLeft": 0.5,
         "eyeLookInRight": 0.5,
