@@ -13,14 +13,14 @@ UNITY = ROOT / "unity-package" / "Runtime" / "Kernels"
 LISTS = re.compile(r"const \[([A-Z_, ]+)\] = \[([\d, ]+)\];")
 
 
-def defined(stem: str, name: str) -> int:
+def defined(file: str, name: str) -> int:
     """A number of a shader, or a product of numbers."""
-    text = (ROOT / "ComputeShaders" / f"{stem}.compute").read_text()
+    text = (ROOT / "ComputeShaders" / file).read_text()
     (value,) = re.findall(rf"^#define {name} (\(\w+ \* \w+\)|\d+)", text, re.MULTILINE)
     if value.isdigit():
         return int(value)
     first, second = re.findall(r"\w+", value)
-    return defined(stem, first) * defined(stem, second)
+    return defined(file, first) * defined(file, second)
 
 
 def in_unity(name: str) -> int:
@@ -37,17 +37,17 @@ def in_browser(name: str) -> int:
 
 
 @pytest.mark.parametrize(
-    ("stem", "define", "python", "unity", "browser"),
+    ("file", "define", "python", "unity", "browser"),
     [
-        ("mlp_matmul", "ROWS", channels.LAYER_ROWS, "LayerRows", "LAYER_ROWS"),
-        ("mlp_matmul", "COLUMNS", channels.MESH_COLUMNS, "MeshColumns", "MESH_COLUMNS"),
-        ("blend_subbands", "TEXELS", channels.LL_PAIRS, "LlPairs", "LL_PAIRS"),
-        ("blend_subbands", "TILE", channels.DETAIL_TILE, "DetailTile", "DETAIL_TILE"),
-        ("inverse_dwt", "TILE", channels.COARSE_TILE, "CoarseTile", "COARSE_TILE"),
-        ("inverse_dwt", "BATCH", inverse_dwt.BATCH, "ChannelBatch", "BATCH"),
+        ("mlp_matmul.compute", "ROWS", channels.LAYER_ROWS, "LayerRows", "LAYER_ROWS"),
+        ("mlp_matmul.compute", "COLUMNS", channels.MESH_COLUMNS, "MeshColumns", "MESH_COLUMNS"),
+        ("blend_subbands.compute", "TEXELS", channels.LL_PAIRS, "LlPairs", "LL_PAIRS"),
+        ("blend_subbands.compute", "TILE", channels.DETAIL_TILE, "DetailTile", "DETAIL_TILE"),
+        ("upsample.hlsl", "TILE", channels.COARSE_TILE, "CoarseTile", "COARSE_TILE"),
+        ("upsample.hlsl", "BATCH", inverse_dwt.BATCH, "ChannelBatch", "BATCH"),
     ],
 )
 def test_groups_are_as_large_as_the_kernel_has_them(
-    stem: str, define: str, python: int, unity: str, browser: str
+    file: str, define: str, python: int, unity: str, browser: str
 ) -> None:
-    assert (python, in_unity(unity), in_browser(browser)) == (defined(stem, define),) * 3
+    assert (python, in_unity(unity), in_browser(browser)) == (defined(file, define),) * 3
