@@ -6,7 +6,7 @@ eyelids of ARKit. What stands in for what is data, expression_names.json; browse
 python/mua/web/names/match.js, unity-package/Runtime/Motion/ExpressionNames.cs.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 
 import numpy as np
@@ -22,9 +22,21 @@ from mua.pose.expression_vocabulary import (
     likeness,
 )
 
-# For each expression, sets of others that stand for it; the first of which an avatar has any is taken.
 STAND_INS: Mapping[str, Sequence[Mapping[str, float]]] = NAMES["standIns"]
 _VOCABULARIES = (VRM, VISEMES, ARKIT, PAIRS_AND_HALVES)  # where a source has several, an expression follows the first
+_SIDED = {*ARKIT, *PAIRS_AND_HALVES}
+
+
+def stand_ins(name: str) -> Iterator[Mapping[str, float]]:
+    """Sets of expressions that stand for one, of which the first counts that an avatar has any of.
+
+    Of ARKit's, their pairs and halves, both sides stand for both as one, and half of that for a side, before others.
+    """
+    whole = name.removesuffix("Left").removesuffix("Right")
+    for sided in ({f"{name}Left": 1.0, f"{name}Right": 1.0}, {whole: 0.5}):
+        if _SIDED.issuperset(sided):
+            yield sided
+    yield from STAND_INS.get(name, ())
 
 
 def match_expressions(
@@ -83,7 +95,7 @@ def rows_of(names: Sequence[str]) -> dict[str, int]:
 
 def _nearest(name: str, row_of: Mapping[str, int]) -> dict[str, float]:
     """What an avatar has of the first set that stands for an expression."""
-    for weights in STAND_INS.get(name, ()):
+    for weights in stand_ins(name):
         there = {other: weight for other, weight in weights.items() if other in row_of}
         if there:
             return there

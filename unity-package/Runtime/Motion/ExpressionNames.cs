@@ -14,7 +14,8 @@ namespace Mua.Motion
         private static readonly Regex Word = new Regex(
             @"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+|[\p{L}\p{Nl}\p{No}\p{Cs}-[A-Za-z]]+", RegexOptions.CultureInvariant);
 
-        private static readonly string[] Sides = { "left", "right" };
+        private static readonly string[] Sides = { "left", "right" }, SideWords = { "Left", "Right" };
+        private static readonly HashSet<string> Sided = InArkitOrPaired();
         private static readonly Dictionary<string, string> BySpelling = Spelt();
         private static readonly Dictionary<string, string> ByOtherName = OtherNames();
 
@@ -127,20 +128,41 @@ namespace Mua.Motion
         private static List<KeyValuePair<string, float>> Nearest(string known, Dictionary<string, int> rows)
         {
             var there = new List<KeyValuePair<string, float>>();
-            if (known != null && ExpressionTable.StandIns.TryGetValue(known, out Dictionary<string, float>[] sets))
+            foreach (Dictionary<string, float> set in known == null ? new List<Dictionary<string, float>>() : StandIns(known))
             {
-                for (int i = 0; i < sets.Length && there.Count == 0; i++)
+                foreach (KeyValuePair<string, float> share in set)
                 {
-                    foreach (KeyValuePair<string, float> share in sets[i])
+                    if (rows.ContainsKey(share.Key))
                     {
-                        if (rows.ContainsKey(share.Key))
-                        {
-                            there.Add(share);
-                        }
+                        there.Add(share);
                     }
+                }
+                if (there.Count > 0)
+                {
+                    break;
                 }
             }
             return there;
+        }
+
+        /// <summary>
+        /// Sets that stand for an expression. Of ARKit's, their pairs and halves, both sides stand for both as one, and half of
+        /// that for a side, before others.
+        /// </summary>
+        private static List<Dictionary<string, float>> StandIns(string known)
+        {
+            string side = Array.Find(SideWords, word => known.EndsWith(word, StringComparison.Ordinal)) ?? "";
+            var sets = new List<Dictionary<string, float>>
+            {
+                new Dictionary<string, float> { { known + SideWords[0], 1 }, { known + SideWords[1], 1 } },
+                new Dictionary<string, float> { { known.Substring(0, known.Length - side.Length), 0.5f } },
+            };
+            sets.RemoveAll(sided => !Sided.IsSupersetOf(sided.Keys));
+            if (ExpressionTable.StandIns.TryGetValue(known, out Dictionary<string, float>[] others))
+            {
+                sets.AddRange(others);
+            }
+            return sets;
         }
 
         private static int Rank(string known)
@@ -176,6 +198,13 @@ namespace Mua.Motion
         private static string Side(string word)
         {
             return Array.Find(Sides, side => word == side || word == side.Substring(0, 1));
+        }
+
+        private static HashSet<string> InArkitOrPaired()
+        {
+            var sided = new HashSet<string>(ExpressionTable.Vocabularies[2]);
+            sided.UnionWith(ExpressionTable.Vocabularies[3]);
+            return sided;
         }
 
         private static Dictionary<string, string> Spelt()

@@ -46,7 +46,8 @@ namespace Mua.Motion
         /// <summary>Words before a name that only say whose it is.</summary>
         public static readonly string[] Owners =
         {
-            "ai", "ak", "arkit", "au", "blend", "blendshape", "bs", "ca", "face", "fcl", "head", "shape", "vrc",
+            "aa", "ai", "ak", "all", "arkit", "au", "blend", "blendshape", "bs", "ca", "face", "fcl", "head", "shape",
+            "vi", "vrc",
         };
 
         /// <summary>Other names, with those that they mean.</summary>
@@ -58,32 +59,26 @@ namespace Mua.Motion
             { "th", "viseme_TH" }, { "dd", "viseme_DD" }, { "kk", "viseme_kk" }, { "ch", "viseme_CH" },
             { "ss", "viseme_SS" }, { "nn", "viseme_nn" }, { "rr", "viseme_RR" }, { "mth_a", "aa" }, { "mth_i", "ih" },
             { "mth_u", "ou" }, { "mth_e", "ee" }, { "mth_o", "oh" }, { "eye_close", "blink" }, { "eye_def_c", "blink" },
-            { "all_joy", "happy" }, { "all_angry", "angry" }, { "all_sorrow", "sad" }, { "all_fun", "relaxed" },
-            { "all_surprised", "surprised" }, { "all_neutral", "neutral" }, { "eyes_closed", "blink" },
-            { "eyes_look_up", "lookUp" }, { "eyes_look_down", "lookDown" }, { "mouth_open", "aa" },
-            { "mouth_closed", "mouthClose" }, { "lip_funnel", "mouthFunnel" }, { "lip_pucker", "mouthPucker" },
-            { "あ", "aa" }, { "い", "ih" }, { "う", "ou" }, { "え", "ee" }, { "お", "oh" }, { "まばたき", "blink" },
-            { "ウィンク", "blinkLeft" }, { "ウィンク右", "blinkRight" }, { "笑い", "relaxed" }, { "びっくり", "surprised" },
-            { "AA_VI_00_Sil", "viseme_sil" }, { "AA_VI_01_PP", "viseme_PP" }, { "AA_VI_02_FF", "viseme_FF" },
-            { "AA_VI_03_TH", "viseme_TH" }, { "AA_VI_04_DD", "viseme_DD" }, { "AA_VI_05_KK", "viseme_kk" },
-            { "AA_VI_06_CH", "viseme_CH" }, { "AA_VI_07_SS", "viseme_SS" }, { "AA_VI_08_nn", "viseme_nn" },
-            { "AA_VI_09_RR", "viseme_RR" }, { "AA_VI_10_aa", "viseme_aa" }, { "AA_VI_11_E", "viseme_E" },
-            { "AA_VI_12_ih", "viseme_ih" }, { "AA_VI_13_oh", "viseme_oh" }, { "AA_VI_14_ou", "viseme_ou" },
-            { "LeyeClose_h", "eyeBlinkLeft" }, { "LeyeOpen_h", "eyeWideLeft" }, { "Lsquint_h", "eyeSquintLeft" },
-            { "LsmileClose_h", "mouthSmileLeft" }, { "LmouthSad_h", "mouthFrownLeft" },
-            { "LlipUp_h", "mouthUpperUpLeft" }, { "LlipDown_h", "mouthLowerDownLeft" },
-            { "LbrowDown_h", "browDownLeft" }, { "Ljaw_h", "jawLeft" }, { "LLbrowUp_h", "browOuterUpLeft" },
-            { "ReyeClose_h", "eyeBlinkRight" }, { "ReyeOpen_h", "eyeWideRight" }, { "Rsquint_h", "eyeSquintRight" },
-            { "RsmileClose_h", "mouthSmileRight" }, { "RmouthSad_h", "mouthFrownRight" },
-            { "RlipUp_h", "mouthUpperUpRight" }, { "RlipDown_h", "mouthLowerDownRight" },
-            { "RbrowDown_h", "browDownRight" }, { "Rjaw_h", "jawRight" }, { "RRbrowUp_h", "browOuterUpRight" },
-            { "JawFront_h", "jawForward" }, { "MouthOpen_h", "jawOpen" }, { "Kiss_h", "mouthPucker" },
-            { "AE_AA_h", "viseme_aa" }, { "AO_a_h", "viseme_oh" }, { "Ax_E_h", "viseme_E" }, { "UW_U_h", "viseme_ou" },
-            { "TD_I_h", "viseme_DD" }, { "FV_h", "viseme_FF" }, { "SH_CH_h", "viseme_CH" }, { "KG_h", "viseme_kk" },
-            { "brow_lowerer", "browDown" }, { "inner_brow_raiser", "browInnerUp" },
-            { "outer_brow_raiser", "browOuterUp" }, { "cheek_raiser", "cheekSquint" }, { "dimpler", "mouthDimple" },
-            { "lid_tightener", "eyeSquint" }, { "lip_corner_depressor", "mouthFrown" },
-            { "lip_corner_puller", "mouthSmile" }, { "lip_pressor", "mouthPress" }, { "lip_stretcher", "mouthStretch" },
+            { "eyes_closed", "blink" }, { "eyes_look_up", "lookUp" }, { "eyes_look_down", "lookDown" },
+            { "mouth_open", "aa" }, { "mouth_closed", "mouthClose" }, { "lip_funnel", "mouthFunnel" },
+            { "lip_pucker", "mouthPucker" }, { "あ", "aa" }, { "い", "ih" }, { "う", "ou" }, { "え", "ee" }, { "お", "oh" },
+            { "まばたき", "blink" }, { "ウィンク", "blinkLeft" }, { "ウィンク右", "blinkRight" }, { "笑い", "relaxed" },
+            { "びっくり", "surprised" }, { "LeyeClose_h", "eyeBlinkLeft" }, { "LeyeOpen_h", "eyeWideLeft" },
+            { "Lsquint_h", "eyeSquintLeft" }, { "LsmileClose_h", "mouthSmileLeft" },
+            { "LmouthSad_h", "mouthFrownLeft" }, { "LlipUp_h", "mouthUpperUpLeft" },
+            { "LlipDown_h", "mouthLowerDownLeft" }, { "LbrowDown_h", "browDownLeft" }, { "Ljaw_h", "jawLeft" },
+            { "LLbrowUp_h", "browOuterUpLeft" }, { "ReyeClose_h", "eyeBlinkRight" }, { "ReyeOpen_h", "eyeWideRight" },
+            { "Rsquint_h", "eyeSquintRight" }, { "RsmileClose_h", "mouthSmileRight" },
+            { "RmouthSad_h", "mouthFrownRight" }, { "RlipUp_h", "mouthUpperUpRight" },
+            { "RlipDown_h", "mouthLowerDownRight" }, { "RbrowDown_h", "browDownRight" }, { "Rjaw_h", "jawRight" },
+            { "RRbrowUp_h", "browOuterUpRight" }, { "JawFront_h", "jawForward" }, { "MouthOpen_h", "jawOpen" },
+            { "Kiss_h", "mouthPucker" }, { "AE_AA_h", "viseme_aa" }, { "AO_a_h", "viseme_oh" },
+            { "Ax_E_h", "viseme_E" }, { "UW_U_h", "viseme_ou" }, { "TD_I_h", "viseme_DD" }, { "FV_h", "viseme_FF" },
+            { "SH_CH_h", "viseme_CH" }, { "KG_h", "viseme_kk" }, { "brow_lowerer", "browDown" },
+            { "inner_brow_raiser", "browInnerUp" }, { "outer_brow_raiser", "browOuterUp" },
+            { "cheek_raiser", "cheekSquint" }, { "dimpler", "mouthDimple" }, { "lid_tightener", "eyeSquint" },
+            { "lip_corner_depressor", "mouthFrown" }, { "lip_corner_puller", "mouthSmile" },
+            { "lip_pressor", "mouthPress" }, { "lip_stretcher", "mouthStretch" },
             { "lower_lip_depressor", "mouthLowerDown" }, { "nose_wrinkler", "noseSneer" },
             { "upper_lid_raiser", "eyeWide" }, { "upper_lip_raiser", "mouthUpperUp" },
             { "chin_raiser", "mouthShrugLower" }, { "chin_raiser_b", "mouthShrugLower" },
@@ -101,21 +96,21 @@ namespace Mua.Motion
             { "brow_up", "browOuterUp" }, { "eyes_wide", "eyeWide" }, { "squint", "eyeSquint" },
             { "smile", "mouthSmile" }, { "frown", "mouthFrown" }, { "mouth_corner_pull", "mouthSmile" },
             { "nose_scrunch", "noseSneer" }, { "upper_lip_up", "mouthUpperUp" }, { "lower_lip_down", "mouthLowerDown" },
-            { "midmouth_left", "mouthLeft" }, { "midmouth_right", "mouthRight" }, { "lower_lip_in", "mouthRollLower" },
-            { "upper_lip_in", "mouthRollUpper" }, { "jaw_foreward", "jawForward" }, { "brow_drop", "browDown" },
-            { "brow_raise_inner", "browInnerUp" }, { "brow_raise_outer", "browOuterUp" },
-            { "cheek_raise", "cheekSquint" }, { "mouth_up_upper", "mouthUpperUp" },
-            { "mouth_down_lower", "mouthLowerDown" }, { "mouth_pucker_up", "mouthPucker" },
-            { "mouth_roll_in_lower", "mouthRollLower" }, { "mouth_roll_in_upper", "mouthRollUpper" },
-            { "eye_l_look_l", "eyeLookOutLeft" }, { "eye_l_look_r", "eyeLookInLeft" },
-            { "eye_l_look_up", "eyeLookUpLeft" }, { "eye_l_look_down", "eyeLookDownLeft" },
-            { "eye_r_look_l", "eyeLookInRight" }, { "eye_r_look_r", "eyeLookOutRight" },
-            { "eye_r_look_up", "eyeLookUpRight" }, { "eye_r_look_down", "eyeLookDownRight" }, { "v_open", "viseme_aa" },
-            { "v_explosive", "viseme_PP" }, { "v_dental_lip", "viseme_FF" }, { "v_tight_o", "viseme_ou" },
-            { "v_wide", "viseme_E" }, { "v_affricate", "viseme_CH" }, { "eye_blink", "blink" },
-            { "eye_closed", "blink" }, { "eye_upper_close", "blink" }, { "eye_brow_down", "browDown" },
-            { "eye_brow_up", "browOuterUp" }, { "lip_a", "aa" }, { "lip_i", "ih" }, { "lip_u", "ou" },
-            { "lip_e", "ee" }, { "lip_o", "oh" }, { "relax", "relaxed" }, { "surprise", "surprised" },
+            { "lower_lip_in", "mouthRollLower" }, { "upper_lip_in", "mouthRollUpper" },
+            { "jaw_foreward", "jawForward" }, { "brow_drop", "browDown" }, { "brow_raise_inner", "browInnerUp" },
+            { "brow_raise_outer", "browOuterUp" }, { "cheek_raise", "cheekSquint" },
+            { "mouth_up_upper", "mouthUpperUp" }, { "mouth_down_lower", "mouthLowerDown" },
+            { "mouth_pucker_up", "mouthPucker" }, { "mouth_roll_in_lower", "mouthRollLower" },
+            { "mouth_roll_in_upper", "mouthRollUpper" }, { "eye_l_look_l", "eyeLookOutLeft" },
+            { "eye_l_look_r", "eyeLookInLeft" }, { "eye_l_look_up", "eyeLookUpLeft" },
+            { "eye_l_look_down", "eyeLookDownLeft" }, { "eye_r_look_l", "eyeLookInRight" },
+            { "eye_r_look_r", "eyeLookOutRight" }, { "eye_r_look_up", "eyeLookUpRight" },
+            { "eye_r_look_down", "eyeLookDownRight" }, { "v_open", "viseme_aa" }, { "v_explosive", "viseme_PP" },
+            { "v_dental_lip", "viseme_FF" }, { "v_tight_o", "viseme_ou" }, { "v_wide", "viseme_E" },
+            { "v_affricate", "viseme_CH" }, { "eye_blink", "blink" }, { "eye_closed", "blink" },
+            { "eye_upper_close", "blink" }, { "eye_brow_down", "browDown" }, { "eye_brow_up", "browOuterUp" },
+            { "lip_a", "aa" }, { "lip_i", "ih" }, { "lip_u", "ou" }, { "lip_e", "ee" }, { "lip_o", "oh" },
+            { "relax", "relaxed" }, { "surprise", "surprised" },
         };
 
         /// <summary>Sets of others that stand for an expression, each with its share.</summary>
@@ -264,11 +259,9 @@ namespace Mua.Motion
                     new Dictionary<string, float> { { "blink", 0.5f }, },
                 } },
                 { "eyeWideLeft", new[] {
-                    new Dictionary<string, float> { { "eyeWide", 0.5f }, },
                     new Dictionary<string, float> { { "surprised", 0.5f }, },
                 } },
                 { "eyeWideRight", new[] {
-                    new Dictionary<string, float> { { "eyeWide", 0.5f }, },
                     new Dictionary<string, float> { { "surprised", 0.5f }, },
                 } },
                 { "eyeLookUpLeft", new[] {
@@ -310,184 +303,67 @@ namespace Mua.Motion
                     new Dictionary<string, float> { { "viseme_oh", 1f }, },
                 } },
                 { "mouthPucker", new[] {
-                    new Dictionary<string, float> { { "mouthPuckerLeft", 1f }, { "mouthPuckerRight", 1f }, },
                     new Dictionary<string, float> { { "ou", 1f }, },
                     new Dictionary<string, float> { { "viseme_ou", 1f }, },
                 } },
                 { "mouthSmileLeft", new[] {
-                    new Dictionary<string, float> { { "mouthSmile", 0.5f }, },
                     new Dictionary<string, float> { { "happy", 0.5f }, },
                 } },
                 { "mouthSmileRight", new[] {
-                    new Dictionary<string, float> { { "mouthSmile", 0.5f }, },
                     new Dictionary<string, float> { { "happy", 0.5f }, },
                 } },
                 { "mouthFrownLeft", new[] {
-                    new Dictionary<string, float> { { "mouthFrown", 0.5f }, },
                     new Dictionary<string, float> { { "sad", 0.5f }, },
                 } },
                 { "mouthFrownRight", new[] {
-                    new Dictionary<string, float> { { "mouthFrown", 0.5f }, },
                     new Dictionary<string, float> { { "sad", 0.5f }, },
                 } },
                 { "mouthStretchLeft", new[] {
-                    new Dictionary<string, float> { { "mouthStretch", 0.5f }, },
                     new Dictionary<string, float> { { "ih", 0.5f }, },
                     new Dictionary<string, float> { { "viseme_ih", 0.5f }, },
                 } },
                 { "mouthStretchRight", new[] {
-                    new Dictionary<string, float> { { "mouthStretch", 0.5f }, },
                     new Dictionary<string, float> { { "ih", 0.5f }, },
                     new Dictionary<string, float> { { "viseme_ih", 0.5f }, },
                 } },
                 { "mouthPressLeft", new[] {
-                    new Dictionary<string, float> { { "mouthPress", 0.5f }, },
                     new Dictionary<string, float> { { "viseme_PP", 0.5f }, },
                 } },
                 { "mouthPressRight", new[] {
-                    new Dictionary<string, float> { { "mouthPress", 0.5f }, },
                     new Dictionary<string, float> { { "viseme_PP", 0.5f }, },
                 } },
                 { "browDownLeft", new[] {
-                    new Dictionary<string, float> { { "browDown", 0.5f }, },
                     new Dictionary<string, float> { { "angry", 0.5f }, },
                 } },
                 { "browDownRight", new[] {
-                    new Dictionary<string, float> { { "browDown", 0.5f }, },
                     new Dictionary<string, float> { { "angry", 0.5f }, },
                 } },
                 { "tongueOut", new[] {
                     new Dictionary<string, float> { { "viseme_TH", 1f }, },
                 } },
                 { "browDown", new[] {
-                    new Dictionary<string, float> { { "browDownLeft", 1f }, { "browDownRight", 1f }, },
                     new Dictionary<string, float> { { "angry", 1f }, },
                 } },
-                { "browOuterUpLeft", new[] {
-                    new Dictionary<string, float> { { "browOuterUp", 0.5f }, },
-                } },
-                { "browOuterUpRight", new[] {
-                    new Dictionary<string, float> { { "browOuterUp", 0.5f }, },
-                } },
-                { "browOuterUp", new[] {
-                    new Dictionary<string, float> { { "browOuterUpLeft", 1f }, { "browOuterUpRight", 1f }, },
-                } },
-                { "eyeSquintLeft", new[] {
-                    new Dictionary<string, float> { { "eyeSquint", 0.5f }, },
-                } },
-                { "eyeSquintRight", new[] {
-                    new Dictionary<string, float> { { "eyeSquint", 0.5f }, },
-                } },
-                { "eyeSquint", new[] {
-                    new Dictionary<string, float> { { "eyeSquintLeft", 1f }, { "eyeSquintRight", 1f }, },
-                } },
                 { "eyeWide", new[] {
-                    new Dictionary<string, float> { { "eyeWideLeft", 1f }, { "eyeWideRight", 1f }, },
                     new Dictionary<string, float> { { "surprised", 1f }, },
                 } },
-                { "cheekSquintLeft", new[] {
-                    new Dictionary<string, float> { { "cheekSquint", 0.5f }, },
-                } },
-                { "cheekSquintRight", new[] {
-                    new Dictionary<string, float> { { "cheekSquint", 0.5f }, },
-                } },
-                { "cheekSquint", new[] {
-                    new Dictionary<string, float> { { "cheekSquintLeft", 1f }, { "cheekSquintRight", 1f }, },
-                } },
-                { "noseSneerLeft", new[] {
-                    new Dictionary<string, float> { { "noseSneer", 0.5f }, },
-                } },
-                { "noseSneerRight", new[] {
-                    new Dictionary<string, float> { { "noseSneer", 0.5f }, },
-                } },
-                { "noseSneer", new[] {
-                    new Dictionary<string, float> { { "noseSneerLeft", 1f }, { "noseSneerRight", 1f }, },
-                } },
                 { "mouthFrown", new[] {
-                    new Dictionary<string, float> { { "mouthFrownLeft", 1f }, { "mouthFrownRight", 1f }, },
                     new Dictionary<string, float> { { "sad", 1f }, },
                 } },
-                { "mouthDimpleLeft", new[] {
-                    new Dictionary<string, float> { { "mouthDimple", 0.5f }, },
-                } },
-                { "mouthDimpleRight", new[] {
-                    new Dictionary<string, float> { { "mouthDimple", 0.5f }, },
-                } },
-                { "mouthDimple", new[] {
-                    new Dictionary<string, float> { { "mouthDimpleLeft", 1f }, { "mouthDimpleRight", 1f }, },
-                } },
                 { "mouthStretch", new[] {
-                    new Dictionary<string, float> { { "mouthStretchLeft", 1f }, { "mouthStretchRight", 1f }, },
                     new Dictionary<string, float> { { "ih", 1f }, },
                     new Dictionary<string, float> { { "viseme_ih", 1f }, },
                 } },
                 { "mouthPress", new[] {
-                    new Dictionary<string, float> { { "mouthPressLeft", 1f }, { "mouthPressRight", 1f }, },
                     new Dictionary<string, float> { { "viseme_PP", 1f }, },
                 } },
-                { "mouthLowerDownLeft", new[] {
-                    new Dictionary<string, float> { { "mouthLowerDown", 0.5f }, },
-                } },
-                { "mouthLowerDownRight", new[] {
-                    new Dictionary<string, float> { { "mouthLowerDown", 0.5f }, },
-                } },
-                { "mouthLowerDown", new[] {
-                    new Dictionary<string, float> { { "mouthLowerDownLeft", 1f }, { "mouthLowerDownRight", 1f }, },
-                } },
-                { "mouthUpperUpLeft", new[] {
-                    new Dictionary<string, float> { { "mouthUpperUp", 0.5f }, },
-                } },
-                { "mouthUpperUpRight", new[] {
-                    new Dictionary<string, float> { { "mouthUpperUp", 0.5f }, },
-                } },
-                { "mouthUpperUp", new[] {
-                    new Dictionary<string, float> { { "mouthUpperUpLeft", 1f }, { "mouthUpperUpRight", 1f }, },
-                } },
-                { "browInnerUp", new[] {
-                    new Dictionary<string, float> { { "browInnerUpLeft", 1f }, { "browInnerUpRight", 1f }, },
-                } },
-                { "browInnerUpLeft", new[] {
-                    new Dictionary<string, float> { { "browInnerUp", 0.5f }, },
-                } },
-                { "browInnerUpRight", new[] {
-                    new Dictionary<string, float> { { "browInnerUp", 0.5f }, },
-                } },
-                { "cheekPuff", new[] {
-                    new Dictionary<string, float> { { "cheekPuffLeft", 1f }, { "cheekPuffRight", 1f }, },
-                } },
-                { "cheekPuffLeft", new[] {
-                    new Dictionary<string, float> { { "cheekPuff", 0.5f }, },
-                } },
-                { "cheekPuffRight", new[] {
-                    new Dictionary<string, float> { { "cheekPuff", 0.5f }, },
-                } },
                 { "mouthPuckerLeft", new[] {
-                    new Dictionary<string, float> { { "mouthPucker", 0.5f }, },
                     new Dictionary<string, float> { { "ou", 0.5f }, },
                     new Dictionary<string, float> { { "viseme_ou", 0.5f }, },
                 } },
                 { "mouthPuckerRight", new[] {
-                    new Dictionary<string, float> { { "mouthPucker", 0.5f }, },
                     new Dictionary<string, float> { { "ou", 0.5f }, },
                     new Dictionary<string, float> { { "viseme_ou", 0.5f }, },
-                } },
-                { "mouthRollLower", new[] {
-                    new Dictionary<string, float> { { "mouthRollLowerLeft", 1f }, { "mouthRollLowerRight", 1f }, },
-                } },
-                { "mouthRollLowerLeft", new[] {
-                    new Dictionary<string, float> { { "mouthRollLower", 0.5f }, },
-                } },
-                { "mouthRollLowerRight", new[] {
-                    new Dictionary<string, float> { { "mouthRollLower", 0.5f }, },
-                } },
-                { "mouthRollUpper", new[] {
-                    new Dictionary<string, float> { { "mouthRollUpperLeft", 1f }, { "mouthRollUpperRight", 1f }, },
-                } },
-                { "mouthRollUpperLeft", new[] {
-                    new Dictionary<string, float> { { "mouthRollUpper", 0.5f }, },
-                } },
-                { "mouthRollUpperRight", new[] {
-                    new Dictionary<string, float> { { "mouthRollUpper", 0.5f }, },
                 } },
                 { "mouthFunnelLowerLeft", new[] {
                     new Dictionary<string, float> { { "mouthFunnel", 0.25f }, },
@@ -511,7 +387,6 @@ namespace Mua.Motion
                 } },
                 { "mouthSmile", new[] {
                     new Dictionary<string, float> { { "happy", 1f }, },
-                    new Dictionary<string, float> { { "mouthSmileLeft", 1f }, { "mouthSmileRight", 1f }, },
                 } },
             };
     }

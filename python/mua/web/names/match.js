@@ -10,6 +10,7 @@ const SIDE = new Map([
   ["right", "right"],
 ]);
 const VOCABULARIES = [TABLE.vrm, TABLE.visemes, TABLE.arkit, TABLE.pairsAndHalves]; // where a source has several, an expression follows the first
+const SIDED = new Set([...TABLE.arkit, ...TABLE.pairsAndHalves]);
 const STAND_INS = new Map(Object.entries(TABLE.standIns));
 const BY_SPELLING = new Map(VOCABULARIES.flat().map((name) => [spelt(name), name]));
 const BY_OTHER_NAME = new Map(Object.entries(TABLE.otherNames).map(([other, name]) => [spelt(other), name]));
@@ -51,7 +52,7 @@ export function matchExpressions(names, source) {
   for (const [column, row] of direct.entries()) {
     if (row >= 0) matrix[row * source.length + column] = 1;
     else
-      for (const [other, share] of nearest(known[column], rows)) {
+      for (const [other, share] of nearest(known[column] ?? "", rows)) {
         const row = /** @type {number} */ (rows.get(other));
         if (direct.includes(row)) continue;
         const rank = VOCABULARIES.findIndex((vocabulary) => vocabulary.includes(known[column] ?? ""));
@@ -91,9 +92,11 @@ function likeness(/** @type {string} */ name) {
   return 2 * Number(!BY_SPELLING.has(spelt(name))) + Number(/\p{Nd}/u.test(name.split(".").at(-1) ?? ""));
 }
 
-/** What an avatar has of the first set that stands for an expression. @param {string | undefined} known @param {Map<string, number>} rows @returns {[string, number][]} */
+/** What an avatar has of the first set that stands for an expression. @param {string} known "" for none @param {Map<string, number>} rows @returns {[string, number][]} */
 function nearest(known, rows) {
-  for (const set of STAND_INS.get(known ?? "") ?? []) {
+  const sided = [{ [`${known}Left`]: 1, [`${known}Right`]: 1 }, { [known.replace(/(Left|Right)$/, "")]: 0.5 }];
+  const own = sided.filter((set) => Object.keys(set).every((name) => SIDED.has(name)));
+  for (const set of [...own, ...(STAND_INS.get(known) ?? [])]) {
     const there = Object.entries(set).filter(([other]) => rows.has(other));
     if (there.length) return there;
   }
