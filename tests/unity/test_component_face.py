@@ -17,7 +17,7 @@ from mua.pose.expression_names import match_expressions
 
 SETTLED = 8  # displayed frames, as in programs/ComponentFace.cs
 SORTING = len(FRAME_ORDER) - FRAME_ORDER.index("SplatProject")
-PLAIN, EXPRESSIVE = len(FRAME_ORDER) - SORTING, len(FRAME_ORDER) - SORTING + 4  # dispatches of a decode and its pose
+PLAIN, EXPRESSIVE = len(FRAME_ORDER) - SORTING, len(FRAME_ORDER) - SORTING + 3  # dispatches of a decode and its pose
 ROUNDED = 4e-7  # metres: two sums of float32 of a metre
 
 
