@@ -1,5 +1,6 @@
 """The close look at a face: each expression of the file beside the splats' own, drawn only where it moves them."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -7,6 +8,7 @@ import gltf_files
 import numpy as np
 import pytest
 
+from mua.arrays import Array
 from mua.avatar.decode import express, pose_splats
 from mua.baking.check import fidelity_of
 from mua.characters.read import read_character
@@ -19,8 +21,8 @@ from mua.rig.character import Character
 from mua.teachers.simulated.still import StillTeacher
 
 TEXELS = 192
-patched = faces._patched
 ROUNDED = 64 * 2**-24  # colours of some splats over each other, of channels that lie in memory in another order
+ONLY_THERE = faces._patched
 
 
 def grinning(tmp_path: Path) -> Character:
@@ -73,9 +75,15 @@ def test_an_expression_drawn_where_it_moves_is_the_picture_drawn_whole(
     teacher = StillTeacher(character, texels=TEXELS)
     rest = Poser(character.source, character.skeleton).rest()
     areas: list[Area] = []
-    monkeypatch.setattr(faces, "_patched", lambda image, area, drawn: areas.append(area) or patched(image, area, drawn))
+
+    def patched(image: Array, area: Area, drawn: Callable[[], Array]) -> Array:
+        areas.append(area)
+        return ONLY_THERE(image, area, drawn)
+
+    monkeypatch.setattr(faces, "_patched", patched)
     with opened() as context:
         parts = faces.compare_faces(context, teacher, source=character.source, rest=rest)
+        assert areas
         assert all(not area.empty and area != whole_screen() for area in areas)
         monkeypatch.setattr(Area, "about", classmethod(lambda *_: whole_screen()))
         whole = faces.compare_faces(context, teacher, source=character.source, rest=rest)
