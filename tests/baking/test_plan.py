@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from mua.baking.plan import RUN_UP, WHOLE_FRAMES, HeldOut, describe_plan, plan, split
+from mua.baking.plan import RUN_UP, WHOLE_FRAMES, HeldOut, describe_plan, plan, split, usual_poses
 from mua.errors import InputError
-from mua.pose.clip import Clip
+from mua.pose.clip import RANGE_OF_MOTION, Clip
 
 
 def clip(name: str, frames: int, rate: float = 24.0) -> Clip:
@@ -83,3 +83,9 @@ def test_how_many_frames_are_recorded_is_said_with_the_reason() -> None:
         "Recorded are all 120 training frames of 2 clips (the preset or --frames asks for 240) and 135 frames of the "
         "built-in range of motion (--motion-range none leaves them out)."
     )
+
+
+def test_usual_poses_are_spread_over_what_is_trained_on_alone() -> None:
+    planned = plan([clip("walk", 80), clip(RANGE_OF_MOTION, 80)], [HeldOut(clip("turn", 80))], frames=1000)
+    assert [int(pose.translations[0, 0]) for pose in usual_poses(planned)] == [10, 30, 50, 70]
+    assert usual_poses(planned[1:]) == []

@@ -144,15 +144,35 @@ def at_vertices(looseness: float) -> tuple[Character, SimulatedTeacher, np.ndarr
     return character, teacher, at_vertex, vertex
 
 
-def test_expressions_light_an_avatar_as_they_light_the_figure() -> None:
-    """The upper half of a tube turns from the sky as it flares: its colours, and none beyond, follow."""
+def flaring() -> Character:
+    """A tube whose upper half an expression turns from the sky."""
     character = tube(rings=9, sides=12, looseness=0.0)
     mesh = character.mesh.vertices
     height = mesh[:, 1] - np.median(mesh[:, 1])
     upper = np.flatnonzero(height > 1e-6).astype(np.int32)
     offsets = (4 * height[upper, None] * mesh[upper] * [1, 0, 1]).astype(np.float32)
-    flare = Expressions(("flare",), np.array([0, len(upper)], np.int32), upper, offsets)
-    teacher = SimulatedTeacher(replace(character, expressions=flare), texels=SIZE)
+    return replace(character, expressions=Expressions(("flare",), np.array([0, len(upper)], np.int32), upper, offsets))
+
+
+def test_expressions_light_an_avatar_as_they_light_the_figure_in_poses_of_its_motion() -> None:
+    """A figure that leans back, of which the bind pose says little."""
+    character = flaring()
+    rotations = character.skeleton.bind_rotations.copy()
+    rotations[1] = [np.cos(0.5), -np.sin(0.5), 0, 0]
+    pose = replace(character.skeleton.bind_pose, rotations=rotations)
+    errors = []
+    for lit_in in ((), (pose, pose)):
+        teacher = SimulatedTeacher(character, texels=SIZE, lit_in=lit_in)
+        rest, lit = teacher.frame(pose), teacher.frame(replace(pose, expressions=np.ones(1)))
+        found = express(teacher.rig, rest.mesh, texture=rest.texture, weights=np.ones(1))[1]
+        errors.append(np.abs(found[:, 11:14] - lit.texture[:, 11:14]).mean())
+    assert errors[1] < errors[0] / 2
+
+
+def test_expressions_light_an_avatar_as_they_light_the_figure() -> None:
+    """Colours follow where the expression moves something, and none beyond."""
+    character = flaring()
+    teacher = SimulatedTeacher(character, texels=SIZE)
     pose = character.skeleton.bind_pose
     rest, lit = teacher.frame(pose), teacher.frame(replace(pose, expressions=np.ones(1)))
     found = express(teacher.rig, rest.mesh, texture=rest.texture, weights=np.ones(1))[1]

@@ -14,7 +14,7 @@ from mua.baking.distillation import Baked, Distillation, choose_device, distil_s
 from mua.baking.filmed import bake_trained_teacher
 from mua.baking.listener import Listener
 from mua.baking.options import check_output
-from mua.baking.plan import describe_plan, plan, split
+from mua.baking.plan import describe_plan, plan, split, usual_poses
 from mua.baking.playback import choose
 from mua.baking.ranges import clips_of, planned_range, settings_for
 from mua.baking.recorded import recorded, recording_key
@@ -160,7 +160,8 @@ def _record(
     for sentence in bind_texels(character, make_template(character), size=texels).notes:
         listener.note(sentence)
     bare = replace(character, clips=())
-    teacher = partial(SimulatedTeacher, bare, texels=texels, corrections=corrections, seed=seed)
+    lit_in = usual_poses(planned)
+    teacher = partial(SimulatedTeacher, bare, texels=texels, corrections=corrections, lit_in=lit_in, seed=seed)
     fitted = [] if corrections is None else [FITTED]
     key = recording_key([*parts(settings, character), *fitted], planned)
     return recorded(teacher, key, settings, planned, listener)

@@ -6,7 +6,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mua.errors import InputError
-from mua.pose.clip import Clip
+from mua.pose.clip import Clip, is_range
+from mua.pose.skeleton import Pose
 from mua.recording import PlannedClip
 
 HELD_SHARE = 5  # without --hold-out, the last fifth of every clip is held out
@@ -15,6 +16,7 @@ HELD_PART = 4  # all held-out clips together get at most a quarter as many frame
 WHOLE_FRAMES = 60  # training frames kept whole to measure the error on
 SHORTEST = 2 * HELD_SHARE  # frames of a clip that is worth cutting
 RUN_UP = 2.0  # seconds before a held-out end that a teacher plays first, so that its cloth is in motion
+USUAL_POSES = 4  # of the motion that is trained on, for what is alike in all of it
 ENDING = " (end)"  # after a clip's name: its held-out end, recorded as a clip of its own
 
 
@@ -91,6 +93,13 @@ def describe_plan(planned: Sequence[PlannedClip], ranges: Sequence[PlannedClip],
     if count := sum(len(clip.wanted) for clip in ranges):
         parts.append(f"{count:,} frames of the built-in range of motion (--motion-range none leaves them out)")
     return f"Recorded are {', '.join(parts[:-1])}{' and ' if len(parts) > 1 else ''}{parts[-1]}."
+
+
+def usual_poses(planned: Sequence[PlannedClip]) -> list[Pose]:
+    """A few poses of the motion that is trained on, evenly spaced; none of the built-in range of motion."""
+    training = [item for item in planned if not item.held_out and not is_range(item.clip.name)]
+    frames = [(item.clip, frame) for item in training for frame in sorted(item.wanted)]
+    return [clip.pose(frame) for clip, frame in (frames[at] for at in _evenly(len(frames), USUAL_POSES))]
 
 
 def _clips(planned: Sequence[PlannedClip]) -> str:

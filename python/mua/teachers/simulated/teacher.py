@@ -8,7 +8,7 @@ teacher's surface. Scales that a clip animates, which rigid joints do not carry,
 the dynamics.
 """
 
-from collections.abc import Container, Iterator
+from collections.abc import Container, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -26,6 +26,7 @@ from mua.teachers.simulated.shading import shade, visibility
 from mua.teachers.simulated.simulated_surface import SimulatedSurface
 from mua.teachers.simulated.smoothing import low_pass
 from mua.teachers.simulated.still import StillTeacher
+from mua.teachers.simulated.surface import MovedSurface
 from mua.texture.surfels import vertex_normals
 
 DARKEST = 3 / 255  # light on a vertex, below which no share of it is taken
@@ -42,6 +43,7 @@ class SimulatedTeacher(StillTeacher):
         texels: int,
         template_vertices: int = 5000,
         corrections: Array | None = None,  # as StillTeacher takes them
+        lit_in: Sequence[Pose] = (),  # in which expressions change the light; none: in the bind pose
         seed: int = 0,
     ) -> None:
         """Prepare a texture of `texels` x `texels`; the seed chooses where the character's cloth folds."""
@@ -51,7 +53,9 @@ class SimulatedTeacher(StillTeacher):
         self._normals = vertex_normals(mesh.vertices, mesh.faces)
         self._longer = low_pass(mesh.vertices, mesh.faces, COARSE_WAVELENGTH * figure_scale(mesh.vertices))
         if self.rig.expressions is not None:
-            self.rig = replace(self.rig, expressions=self._lit(self.rig.expressions))
+            self.rig = replace(
+                self.rig, expressions=self._lit(self.rig.expressions, lit_in or [character.skeleton.bind_pose])
+            )
 
     def frames(self, clip: Clip, wanted: Container[int]) -> Iterator[TeacherFrame | Pose]:
         """Simulate `clip` from rest in its first pose; yield whole frames where wanted, else poses.
@@ -65,30 +69,35 @@ class SimulatedTeacher(StillTeacher):
         for frame, moved in enumerate(self._moving.frames(clip)):
             yield self._whole(clip.pose(frame), moved) if frame in wanted else clip.pose(frame)
 
-    def _lit(self, expressions: Expressions) -> Expressions:
-        """The template's expressions with their gains: how each at 1 changes the light on the bind pose."""
-        gains, rest = np.zeros(len(expressions.vertices)), self._brightness(np.zeros(len(expressions)))
+    def _lit(self, expressions: Expressions, poses: Sequence[Pose]) -> Expressions:
+        """The template's expressions with their gains: how each at 1 changes the light, by least squares over poses."""
+        skeleton = self._character.skeleton
+        surfaces = [self._skinned.posed(skeleton.skinning(pose.rotations, pose.translations)) for pose in poses]
+        rest = self._brightness(surfaces, np.zeros(len(expressions)))
+        squares = np.maximum(np.sum(rest**2, axis=0), len(poses) * DARKEST**2)
+        gains = np.zeros(len(expressions.vertices))
         for e, weights in enumerate(np.eye(len(expressions))):
             entries = slice(*expressions.starts[e : e + 2])
-            at = expressions.vertices[entries]
-            gains[entries] = self._brightness(weights)[at] / np.maximum(rest[at], DARKEST) - 1
+            change = np.sum(rest * (self._brightness(surfaces, weights) - rest), axis=0) / squares
+            gains[entries] = change[expressions.vertices[entries]]
         return replace(expressions, gains=gains.astype(np.float32))
 
     def _brightness(
         self,
+        surfaces: Sequence[MovedSurface],
         weights: Array,  # [E]
     ) -> Array:
-        """The light [T] on the template's vertices in the bind pose, all colours together."""
-        expressions, skeleton, bind = (
-            self._character.expressions,
-            self._character.skeleton,
-            self._character.mesh.vertices,
-        )
+        """The light [S, T] on the template's vertices, all colours together."""
+        expressions, bind = self._character.expressions, self._character.mesh.vertices
         assert expressions is not None
-        moved = bind + expressions.displacement(weights, vertices=len(bind))
-        surface = self._skinned.posed(skeleton.skinning(skeleton.bind_rotations, skeleton.bind_translations))
-        light = self._light(surface.joints, surface.dual, moved, self._surface(moved)[0])
-        return np.asarray(light.gain[self._template].sum(axis=1))
+        face = expressions.displacement(weights, vertices=len(bind))
+        turn = self._surface(bind + face)[0]
+        found = []
+        for surface in surfaces:
+            moved = surface.places + self._skinned.carried(surface.joints, face)
+            light = self._light(surface.joints, surface.dual, moved, turn)
+            found.append(light.gain[self._template].sum(axis=1))
+        return np.stack(found)
 
     def _coarse(self, displacement: Array) -> Array:
         """The long waves [T, 3] of a displacement [V, 3], which the canonical mesh takes on."""
