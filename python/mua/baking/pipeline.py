@@ -35,9 +35,7 @@ from mua.teachers.simulated.still import StillTeacher
 from mua.teachers.simulated.teacher import SimulatedTeacher
 from mua.training.memory import release_memory
 
-FRAMES_OF_A_STEP = (
-    4  # training frames for each step of the fit, so that it takes about an eighth of the time of a quick bake
-)
+FRAMES_OF_A_STEP = 3  # training frames for each step of the fit: less than a tenth of the time of a quick bake
 FITTED = b"fitted"  # part of the key of a fit and of the recording that it corrects, which have one name
 
 
