@@ -33,10 +33,10 @@ SIDE = 1.25  # pixels along an image for a texel along the texture: what is in i
 SAMPLES = 2  # along a side of a pixel of the source: as good as 3, and half as many
 NEARNESS = 2.5  # pixels for a texel in the middle of an image
 ELEVATIONS = -0.35, 0.5  # radians
-RATES = {"offset": 0.05, "size": 0.03, "colour": 0.02}  # offsets over a texel's width
+RATES = {"offset": 0.1, "size": 0.08, "colour": 0.01}  # offsets over a texel's width
 BETAS, EPSILON = (0.9, 0.99), 0.1
 PRIOR = 2.0  # pixels for which each colour stands as it is: what few images show keeps its own
-LAST_RATE = 0.01  # of a rate, in the last step
+LAST_RATE = 0.1  # of a rate, in the last step
 BEYOND = 1.1  # of the half of an image, within which the centre of a splat may lie
 SMALLEST, LARGEST = -1.5, 0.7  # change of a log scale
 
