@@ -6,9 +6,10 @@ import gltf_files
 import numpy as np
 import pytest
 
+from mua.avatar.camera import orbit
 from mua.characters.read import read_character
 from mua.fidelity.compare import compare
-from mua.fidelity.fitting import fit
+from mua.fidelity.fitting import fit, in_view
 from mua.rig.character import Character
 from mua.teachers.simulated.still import StillTeacher
 
@@ -46,3 +47,10 @@ def test_the_same_character_is_fitted_alike(column: Character) -> None:
     first, second = (fit(column, column.clips, teacher=teacher, source=column.source, steps=3) for _ in range(2))
     assert np.array_equal(first, second)
     assert first.any()
+
+
+def test_points_beside_and_behind_the_camera_are_not_in_view() -> None:
+    camera = orbit(np.array([[-1.0, -1, -1], [1, 1, 1]]), screen=(64, 64))
+    eye = np.linalg.inv(camera.view)[:3, 3]
+    points = np.array([[0.0, 0, 0], 2 * eye, [50, 0, 0], [0.5, 0.5, 0], [0, -50, 0]])
+    assert in_view(points, camera).tolist() == [0, 3]

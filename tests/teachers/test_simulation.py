@@ -1,5 +1,6 @@
 """Position-based dynamics: rest, decay, determinism and memory."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -68,6 +69,17 @@ def test_looser_surfaces_deviate_more() -> None:
         deviations.append(np.linalg.norm(play(character, clip) - target, axis=2).mean())
     assert deviations == sorted(deviations)
     assert deviations[0] > 1e-4
+
+
+def test_vertices_that_nearly_coincide_stay_with_their_neighbours() -> None:
+    character = tube(looseness=0.8)
+    vertices, (_, second, third) = character.mesh.vertices.copy(), character.mesh.faces[len(character.mesh.faces) // 2]
+    vertices[third] = vertices[second] + 1e-3 * (vertices[third] - vertices[second])
+    pinched = replace(character, mesh=replace(character.mesh, vertices=vertices))
+    clip = swing(pinched, frames=60)
+    target = np.stack([target for target, _ in skinned(pinched, clip)])
+    away = np.linalg.norm(play(pinched, clip) - target, axis=2)
+    assert 0 < away.max() < 1.5 * np.delete(away, [second, third], axis=1).max()
 
 
 def test_swing_dies_out_when_the_pose_is_held() -> None:

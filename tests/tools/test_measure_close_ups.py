@@ -5,11 +5,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 import still_splats
-from measure_close_ups import main, measured
+from measure_close_ups import main, measured, unlit
 from PIL import Image
 from shared_data import SharedData
 
+from mua.avatar.decode import pose_splats
+from mua.baking.sources import load_character
+from mua.channels import ATTRIBUTES
 from mua.fidelity.measure import MOST_DECIBELS
+from mua.fidelity.posing import Poser
+from mua.teachers.simulated.still import StillTeacher
 
 SCALE = 1000.0  # pixels along a metre: a fringe is looked for within ten
 
@@ -69,3 +74,17 @@ def test_splats_that_were_kept_are_drawn_and_measured_before_those_of_now(
     kept_psnr, arrow, psnr = capsys.readouterr().out.split("front: ")[1].split()[:3]
     assert arrow == "->"
     assert float(kept_psnr) == float(psnr) > 15
+
+
+def test_a_student_is_compared_in_the_colours_of_the_splats(shared_data: SharedData) -> None:
+    character = load_character(shared_data.path("characters/lumberjack.glb"), uv="auto", seed=0)
+    assert character.source is not None
+    teacher, moment = StillTeacher(character, texels=64), Poser(character.source, character.skeleton).rest()
+    shown = teacher.frame(moment.pose, moment.stretches)
+    lit = shown.texture.copy()
+    lit[:, ATTRIBUTES["SH"]] *= 0.5
+    lit[:, ATTRIBUTES["offset"]] += 0.01
+    student = pose_splats(teacher.rig, shown.mesh, texture=lit, pose=moment.pose)
+    found = unlit(student, teacher, shown.texture, moment)
+    np.testing.assert_array_equal(found.sh, shown.texture[:, ATTRIBUTES["SH"]])
+    np.testing.assert_array_equal(found.centres, student.centres)

@@ -5,8 +5,9 @@ python tools/research/measure_close_ups.py hero.glb --avatar hero.muaavatar --mo
 python tools/research/measure_close_ups.py hero.glb --before before/ -o close_ups/
 
 Both are drawn without light, from the front and from behind, so that the part fills the image: as the file stands, or
-in the last frame and the middle one of every motion. An avatar that was baked from the character is drawn beside them,
-with the light and the moving cloth that it learnt, so that only its share of dark pixels can be compared.
+in the last frame and the middle one of every motion. An avatar that was baked from the character is drawn beside them
+with the light and the moving cloth that it learnt, and once more with the splats' colours in place of its own, unlit,
+whose figures follow those of the splats. Give --fit with it, the fit-*.npy of the bake's work directory.
 
 PSNR is over all pixels that either of them covers, on grey, and over those within BORDER of an open border of the
 surface. FLIP is the mean over the covered pixels, of which PER_DEGREE lie along a degree of the eye. "Dark" is the
@@ -37,6 +38,7 @@ from mua.avatar.camera import Camera, orbit
 from mua.avatar.decode import Splats, decode_clip_frame, pose_splats
 from mua.baking.one_sided import open_edges
 from mua.baking.sources import load_character
+from mua.channels import ATTRIBUTES
 from mua.fidelity import fitting
 from mua.fidelity.background import over
 from mua.fidelity.canvas import opened
@@ -169,6 +171,13 @@ def kept_splats(file: Path) -> Splats:
         return Splats(**{field.name: kept[field.name] for field in fields(Splats) if field.name in kept})
 
 
+def unlit(student: Splats, teacher: StillTeacher, texture: Array, moment: Moment) -> Splats:
+    """A student's splats in the colours of this texture [N, 23]."""
+    own = student.texture.copy()
+    own[:, ATTRIBUTES["SH"]] = texture[:, ATTRIBUTES["SH"]]
+    return pose_splats(teacher.rig, student.canonical, texture=own, pose=moment.pose)
+
+
 def close_ups(
     path: Path,
     *,
@@ -177,6 +186,7 @@ def close_ups(
     steps: int,
     before: Path | None,
     avatar: Avatar | None,
+    fit: Path | None,
     motion: Sequence[Path],
 ) -> Iterator[tuple[str, Array, dict[str, Figures]]]:
     """Each part from each side in each pose: its name, images [size, n size, 3], the figures of all but the source."""
@@ -185,7 +195,9 @@ def close_ups(
         raise SystemExit(f"{path}: this format keeps nothing to compare with")
     clips = motion_range(character, (), frames=fitting.POSES, seed=0, short=True)
     teacher = StillTeacher(character, texels=texels)
-    if steps:
+    if fit is not None:
+        teacher = teacher.corrected(np.load(fit))
+    elif steps:
         corrections = fitting.fit(character, clips, teacher=teacher, source=character.source, steps=steps)
         teacher = teacher.corrected(corrections)
     surface = SkinnedSurface(character)
@@ -200,6 +212,7 @@ def close_ups(
             frames["now"] = pose_splats(teacher.rig, shown.mesh, texture=shown.texture, pose=moment.pose)
             if avatar is not None:
                 frames["avatar"] = decode_clip_frame(avatar, clip, frame=at)
+                frames["unlit"] = unlit(frames["avatar"], teacher, shown.texture, moment)
             joints = character.skeleton.skinning(moment.pose.rotations, moment.pose.translations)
             places = surface.posed(joints, moment.stretches).places
             drawn = [skinned(scene, part, moment.nodes) for part in scene.parts]
@@ -228,6 +241,7 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--steps", type=int, default=fitting.STEPS, help="of the fit to the source; 0: none")
     parser.add_argument("--before", type=Path, help="a folder of still_splats.py, to be drawn and measured beside it")
     parser.add_argument("--avatar", type=Path, help="what was baked from the one character, to be drawn beside it")
+    parser.add_argument("--fit", type=Path, help="corrections that the bake of --avatar kept, in place of a fit")
     parser.add_argument("--motion", type=Path, nargs="+", default=[], help="motion files to pose the characters by")
     parser.add_argument("-o", "--output", type=Path, required=True)
     options = parser.parse_args(arguments)
@@ -244,6 +258,7 @@ def main(arguments: list[str] | None = None) -> None:
             steps=options.steps,
             before=options.before,
             avatar=avatar,
+            fit=options.fit,
             motion=options.motion,
         )
         for name, image, figures in drawn:
@@ -257,14 +272,13 @@ def main(arguments: list[str] | None = None) -> None:
 
 
 def _line(name: str, figures: dict[str, Figures]) -> str:
-    shown = [figures[which] for which in ("before", "now") if which in figures]
+    shown = [figures[which] for which in ("before", "now", "unlit") if which in figures]
 
     def each(field: str, form: str) -> str:
         return " -> ".join(format(getattr(one, field), form) for one in shown)
 
     own = f"{name}: {each('psnr', '.2f')} dB of {figures['bound'].psnr:.2f} dB, at borders {each('border', '.2f')} dB"
-    own += f", FLIP {each('flip', '.4f')}, {each('dark', '.1%')} dark outside"
-    return own + (f"; avatar {figures['avatar'].dark:.1%}" if "avatar" in figures else "")
+    return own + f", FLIP {each('flip', '.4f')}, {each('dark', '.1%')} dark outside"
 
 
 if __name__ == "__main__":

@@ -77,8 +77,8 @@ def _fitting(
     low, high = np.full((charts.max() + 1, 2), np.inf), np.full((charts.max() + 1, 2), -np.inf)
     np.minimum.at(low, charts, turned.min(axis=1))
     np.maximum.at(high, charts, turned.max(axis=1))
-    length = np.maximum((high - low).max(axis=1), np.finfo(float).tiny)
-    return corners * np.minimum(1, LONGEST * np.sqrt(areas(corners).sum()) / length)[charts][:, None, None]
+    longest = max(LONGEST * float(np.sqrt(areas(corners).sum())), np.finfo(float).tiny)
+    return corners * (longest / np.maximum((high - low).max(axis=1), longest))[charts][:, None, None]
 
 
 def _with_grid(corners: Array, larger: Array) -> Array:

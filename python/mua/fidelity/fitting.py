@@ -22,20 +22,22 @@ from mua.fidelity.posing import Moment, Poser, skinned
 from mua.pose.clip import Clip
 from mua.rig.character import Character
 from mua.scene import Source
-from mua.splatting.posing import TorchRig, pose_splats
-from mua.splatting.projection import Eye
+from mua.splatting.posing import TorchRig, blend_texels, blend_vertices, place_splats, surface_points
+from mua.splatting.projection import Eye, TorchSplats
 from mua.splatting.rasterise import rasterise
 from mua.teachers.simulated.still import StillTeacher
 
 STEPS = 200  # each of one image
 POSES = 6  # beside that of the file
 SIDE = 1.25  # pixels along an image for a texel along the texture: what is in it changes with both alike
-NEARNESS = 2.5  # pixels for a texel in the middle of an image
+SAMPLES = 2  # along a side of a pixel of the source: as good as 3, and half as many
+NEARNESS = 4.0  # pixels for a texel in the middle of an image
 ELEVATIONS = -0.35, 0.5  # radians
-RATES = {"offset": 0.05, "size": 0.03, "colour": 0.02}  # offsets over a texel's width
+RATES = {"offset": 0.1, "size": 0.08, "colour": 0.01}  # offsets over a texel's width
 BETAS, EPSILON = (0.9, 0.99), 0.1
 PRIOR = 2.0  # pixels for which each colour stands as it is: what few images show keeps its own
-LAST_RATE = 0.01  # of a rate, in the last step
+LAST_RATE = 0.1  # of a rate, in the last step
+BEYOND = 1.1  # of the half of an image, within which the centre of a splat may lie
 SMALLEST, LARGEST = -1.5, 0.7  # change of a log scale
 
 
@@ -45,8 +47,8 @@ class _Shown:
 
     moment: Moment
     drawn: list[Array]  # vertices of the source's parts
-    joints: Tensor  # [J, 8]
-    mesh: Tensor  # [V, 3]
+    texel_dq: Tensor  # [N, 8] bind pose to world
+    surface: Tensor  # [N, 3] canonical
     texture: Tensor  # [N, 23]
     bounds: Tensor  # [2, 3]
     centres: Array  # [N, 3]
@@ -69,13 +71,13 @@ def fit(
     side = round(SIDE * teacher.rig.texels.size)
     poser = Poser(source, character.skeleton)
     with opened() as context:
-        paint = Painter(context, source.scene.parts, source.scene.materials, screen=(side, side))
+        parts, materials = source.scene.parts, source.scene.materials
+        paint = Painter(context, parts, materials, screen=(side, side), samples=SAMPLES)
         poses = [_shown(teacher, moment, source, character) for moment in _moments(poser, clips)]
-        return _descend(teacher, poses, paint, side=side, steps=steps, rng=rng, progress=progress)
+        return _descend(poses, paint, side=side, steps=steps, rng=rng, progress=progress)
 
 
 def _descend(
-    teacher: StillTeacher,
     poses: Sequence[_Shown],
     paint: Painter,
     *,
@@ -85,7 +87,7 @@ def _descend(
     progress: Callable[[int], None],
 ) -> Array:
     """Adam on the squared error of one image after another, each on a background of its own."""
-    rig, count = TorchRig.of(teacher.rig, poses[0].texture), len(poses[0].texture)
+    count = len(poses[0].texture)
     changes = {name: torch.zeros(count, 3, requires_grad=True) for name in RATES}
     optimiser = torch.optim.Adam(
         [{"params": [change], "lr": RATES[name]} for name, change in changes.items()], betas=BETAS, eps=EPSILON
@@ -97,7 +99,7 @@ def _descend(
         camera, background = _camera(shown, widths, side=side, rng=rng), torch.tensor(rng.uniform(size=3)).float()
         source = torch.tensor(paint(shown.drawn, camera))
         target = source[..., :3] + (1 - source[..., 3:]) * background
-        splats = pose_splats(rig, shown.joints, shown.mesh, _corrected(shown.texture, _by(changes, widths)))
+        splats = _splats(shown, _by(changes, widths), in_view(shown.centres, camera))
         image = rasterise(splats, Eye.of(camera, shown.texture), shown.bounds, background)
         optimiser.zero_grad()
         ((image - target).square().sum() + PRIOR * changes["colour"].square().sum()).backward()
@@ -112,6 +114,19 @@ def _by(changes: dict[str, Tensor], widths: Tensor) -> Tensor:
     """[N, 9], metres, of log scales and of display values."""
     sizes = changes["size"].clamp(SMALLEST, LARGEST)
     return torch.cat([changes["offset"] * widths, sizes, changes["colour"]], dim=1)
+
+
+def _splats(shown: _Shown, by: Tensor, texels: Array) -> TorchSplats:
+    """The corrected splats of these texels."""
+    chosen = torch.from_numpy(texels)
+    texture = _corrected(shown.texture[chosen], by.index_select(0, chosen))
+    return place_splats(shown.texel_dq[chosen], shown.surface[chosen], texture)
+
+
+def in_view(centres: Array, camera: Camera) -> Array:
+    """Which points [N, 3] a camera sees or nearly sees, int64 ascending: the others cost time and draw nothing."""
+    clip = centres @ (camera.projection @ camera.view)[:, :3].T + (camera.projection @ camera.view)[:, 3]
+    return np.flatnonzero((np.abs(clip[:, :2]) <= BEYOND * clip[:, 3:]).all(axis=1))
 
 
 def _corrected(texture: Tensor, by: Tensor) -> Tensor:
@@ -139,14 +154,16 @@ def _moments(poser: Poser, clips: Sequence[Clip]) -> Iterator[Moment]:
 def _shown(teacher: StillTeacher, moment: Moment, source: Source, character: Character) -> _Shown:
     frame, scene = teacher.frame(moment.pose, moment.stretches), source.scene
     joints = torch.tensor(character.skeleton.skinning(moment.pose.rotations, moment.pose.translations)).float()
-    mesh, texture = torch.tensor(frame.mesh).float(), torch.tensor(frame.texture).float()
-    with torch.no_grad():
-        centres = pose_splats(TorchRig.of(teacher.rig, texture), joints, mesh, texture).centres.numpy()
+    texture = torch.tensor(frame.texture).float()
+    rig = TorchRig.of(teacher.rig, texture)
+    texel_dq = blend_texels(rig, blend_vertices(rig.skin_indices, rig.skin_weights, joints))
+    surface = surface_points(rig, torch.tensor(frame.mesh).float())
+    centres = place_splats(texel_dq, surface, texture).centres.numpy()
     return _Shown(
         moment=moment,
         drawn=[skinned(scene, part, moment.nodes) for part in scene.parts],
-        joints=joints,
-        mesh=mesh,
+        texel_dq=texel_dq,
+        surface=surface,
         texture=texture,
         bounds=torch.tensor(box_of(centres)).float(),
         centres=centres,

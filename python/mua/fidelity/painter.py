@@ -72,10 +72,11 @@ class Painter:
         materials: Sequence[Material],
         *,
         screen: tuple[int, int],  # width, height, pixels
+        samples: int = SAMPLES,  # along a side of a pixel
     ) -> None:
         self._context, self._materials = context, materials
         self._program = context.program(vertex_shader=VERTEX, fragment_shader=FRAGMENT)
-        self._canvas = Canvas(context, screen, samples=SAMPLES, dtype="f1")
+        self._canvas = Canvas(context, screen, samples=samples, dtype="f1")
         palettes = {part.material for part in parts if _is_palette(part)}
         shown = sorted({part.material for part in parts})
         self._cut_late = {part.material for part in parts if _is_thinned(part, materials[part.material])}

@@ -59,10 +59,26 @@ def pose_splats(
 ) -> TorchSplats:
     """Activate the channels and pose them: the splats of one frame in the world."""
     texel_dq = blend_texels(rig, blend_vertices(rig.skin_indices, rig.skin_weights, joints))
-    points = torch.einsum("nk,nkc->nc", rig.barycentrics, canonical[rig.corners]) + texture[:, 0:3]
+    return place_splats(texel_dq, surface_points(rig, canonical), texture)
+
+
+def surface_points(
+    rig: TorchRig,
+    canonical: Tensor,  # [V, 3] canonical vertices, metres
+) -> Tensor:
+    """The canonical places [N, 3] of the texels on the mesh, metres."""
+    return torch.einsum("nk,nkc->nc", rig.barycentrics, canonical[rig.corners])
+
+
+def place_splats(
+    texel_dq: Tensor,  # [N, 8] unit, bind pose to world
+    surface: Tensor,  # [N, 3] canonical, metres
+    texture: Tensor,  # [N, 23] raw channels (mua.channels)
+) -> TorchSplats:
+    """As pose_splats, where texels are blended and placed on the mesh already."""
     turns = texel_dq[:, :4]
     return TorchSplats(
-        centres=dual_transform(texel_dq, points),
+        centres=dual_transform(texel_dq, surface + texture[:, 0:3]),
         rotations=multiply(turns, texture[:, 3:7] / _norm(texture[:, 3:7])),
         scales=texture[:, 7:10].clamp(max=LARGEST_LOG_SCALE).exp(),
         opacities=texture[:, 10].sigmoid(),

@@ -137,8 +137,10 @@ class Simulation:
         per_ring = 4 / np.diff(starts)[own]  # of edges, in the discrete Laplacian
         evening = per_ring * BENDING * SUBSTEP**2 / ITERATIONS / (lengths / self._scale) ** 2
         evening /= 1 + np.bincount(own, evening, len(vertices))[own]
+        shares = _stretch_shares(own, neighbours, looseness)
+        evening = _within_limit(evening, own, room=1 - np.bincount(own, shares, len(vertices)))
         self._rings = _ints(starts), _ints(neighbours), _floats(evening)
-        self._constraints = _constraints(starts, neighbours, lengths, evening, looseness)
+        self._constraints = _constraints(starts, neighbours, lengths, shares, evening, looseness)
         softness = np.maximum(looseness, 1e-3)
         self._frequency = _floats(2 * np.pi * CLOTH_FREQUENCY / softness**FIRMING)
         self._drag, self._looseness = _floats(DRAG * looseness), _floats(looseness)
@@ -230,21 +232,35 @@ def _constraints(
     starts: Array,  # [V + 1]
     neighbours: Array,  # [E]
     lengths: Array,  # [E] at rest
+    shares: Array,  # [E] of an edge's error that its first vertex takes out in an iteration
     evening: Array,  # [E] share of a neighbour's displacement that a vertex takes over in an iteration
     looseness: Array,  # [V]
 ) -> list[wp.array]:
     """First argument of `rings.relax`: the edges about all vertices that are not rigid, in blocks."""
     blocks = in_blocks(starts, np.flatnonzero(looseness > 0))
-    counts = np.maximum(np.diff(starts), 1)
-    own = np.repeat(np.arange(len(counts)), np.diff(starts))
-    share = STRETCH * looseness[own] ** 3 / counts[own] / np.maximum(looseness[own] + looseness[neighbours], 1e-30)
-    by_edge = ((lengths, 1.0), (share, 0.0), (evening, 0.0))
+    by_edge = ((lengths, 1.0), (shares, 0.0), (evening, 0.0))
     return [
         _ints(blocks.vertices.ravel()),
         _ints(blocks.starts),
         _ints(np.where(blocks.edges >= 0, neighbours[blocks.edges], blocks.owners).ravel()),
         *(_floats(blocks.by_edge(values, none=none).ravel()) for values, none in by_edge),
     ]
+
+
+def _stretch_shares(own: Array, neighbours: Array, looseness: Array) -> Array:
+    """Share [E] of an edge's error that its first vertex takes out in an iteration."""
+    counts = np.bincount(own, minlength=len(looseness))
+    return STRETCH * looseness[own] ** 3 / counts[own] / np.maximum(looseness[own] + looseness[neighbours], 1e-30)
+
+
+def _within_limit(evening: Array, own: Array, *, room: Array) -> Array:
+    """Evening [E] that adds up to no more than `room` [V] about any vertex.
+
+    With stretch, a vertex then moves no farther than to its neighbours, and an iteration enlarges no difference. Beyond
+    that, two vertices a tenth of a millimetre apart threw each other out of the scene.
+    """
+    total = np.bincount(own, evening, len(room))
+    return np.asarray(evening * np.minimum(1, room / np.maximum(total, np.finfo(float).tiny))[own])
 
 
 def gravity_beyond_rest(
