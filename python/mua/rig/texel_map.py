@@ -41,7 +41,7 @@ class TexelMap:
 
     def some(
         self,
-        rows: Array,  # [n] int, ascending
+        rows: Array | slice,  # [n] int, ascending, or whether each is one of them
     ) -> "TexelMap":
         """Some of the texels, without coarser levels."""
         return replace(
