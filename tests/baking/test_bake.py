@@ -34,6 +34,7 @@ from mua.pose.encoding import RATE
 from mua.pose.resample import resample
 from mua.recording import Recording
 from mua.rig.bounds import playback_bounds
+from mua.rig.expressions import Expressions
 
 
 @pytest.fixture(scope="module")
@@ -151,6 +152,14 @@ def test_one_worker_and_several_leave_the_same_bytes(baked: Baked, tmp_path: Pat
 MESH = ("vertices", "faces", "uv", "uv_faces")
 SKELETON = ("names", "parents", "bind_rotations", "bind_translations", "root")
 CHARACTER = ("base_color", "skin_indices", "skin_weights", "looseness")
+FACE = Expressions(
+    names=("smile", "blink"),
+    starts=np.array([0, 1, 2], np.int32),
+    vertices=np.array([3, 4], np.int32),
+    offsets=np.ones((2, 3), np.float32),
+    rules=np.array([0, 3], np.int32),
+)
+EXPRESSIONS = ("names", "starts", "vertices", "offsets", "rules")
 
 
 def _other(owner: object, name: str) -> Any:
@@ -165,9 +174,13 @@ def _other(owner: object, name: str) -> Any:
 
 def test_a_recording_of_another_surface_is_not_taken_for_this_one(tmp_path: Path) -> None:
     settings = BakeSettings(tmp_path / "a.muaavatar", tmp_path, SMALL, "cpu")
-    character = load_character(None, uv="auto", seed=0)
+    character = dataclasses.replace(load_character(None, uv="auto", seed=0), expressions=FACE)
     mesh, skeleton = character.mesh, character.skeleton
     others = [
+        *(
+            dataclasses.replace(character, expressions=dataclasses.replace(FACE, **{name: _other(FACE, name)}))
+            for name in EXPRESSIONS
+        ),
         *(
             dataclasses.replace(character, mesh=dataclasses.replace(mesh, **{name: _other(mesh, name)}))
             for name in MESH

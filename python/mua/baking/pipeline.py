@@ -37,6 +37,7 @@ from mua.training.memory import release_memory
 
 # Steps of the fit, and training frames for each further one: less than a tenth of the time of a bake.
 FEWEST_STEPS, FRAMES_OF_A_STEP = 40, 6
+FRAMES = "frames 2"  # raised where the stand-in teacher or the fit changes what it makes of the same input
 FITTED = b"fitted"  # part of the key of a fit and of the recording that it corrects, which have one name
 
 
@@ -169,11 +170,12 @@ def _record(
 def parts(settings: BakeSettings, character: Character) -> Iterator[bytes]:
     """What the stand-in teacher's frames depend on, besides the motion."""
     skeleton, mesh, face = character.skeleton, character.mesh, character.expressions
-    yield f"in parts {settings.student.texels} {settings.student.seed} {skeleton.names} {skeleton.root}".encode()
+    yield f"{FRAMES} {settings.student.texels} {settings.student.seed} {skeleton.names} {skeleton.root}".encode()
+    yield str(() if face is None else face.names).encode()
     for array in (
         *(skeleton.parents, skeleton.bind_rotations, skeleton.bind_translations),
         *(mesh.vertices, mesh.faces, mesh.uv, mesh.uv_faces, character.base_color),
         *(character.skin_indices, character.skin_weights, character.looseness),
-        *(() if face is None else (face.starts, face.vertices, face.offsets)),  # which template and hidden texels heed
+        *(() if face is None else (face.starts, face.vertices, face.offsets, face.rules)),
     ):
         yield b"none" if array is None else f"{array.shape}".encode() + array.tobytes()
