@@ -110,7 +110,9 @@ def run(
             late.character, late.clips, late.compared = character, tuple(clips), texels
             return None, ()
 
-        def teacher(character: Character, *, texels: int, corrections: object = None, seed: int = -1) -> None:
+        def teacher(
+            character: Character, *, texels: int, corrections: object = None, lit_in: object = None, seed: int = -1
+        ) -> None:
             late.character, late.texels, late.seed = character, texels, seed
 
         def recorded(

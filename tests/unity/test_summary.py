@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from csharp import PROGRAMS, ROOT, RUNTIME, CSharp
 from rich.table import Table
-from synthetic_avatar import synthetic_avatar, with_expressions
+from synthetic_avatar import synthetic_avatar, with_expressions, with_rules
 
 from mua.asset import write
 from mua.asset.read import decode_tree, load
@@ -35,7 +35,7 @@ def test_the_summary_is_that_of_mua_inspect(csharp: CSharp, program: Path, tmp_p
         path = tmp_path / "a.muaavatar"
         write(path, replace(avatar, clips=(replace(avatar.clips[0], rate=29.9701),)))
     elif storage != "golden":
-        avatar = with_expressions(synthetic_avatar())
+        avatar = with_rules(with_expressions(synthetic_avatar()))
         clips = (avatar.clips[0], replace(avatar.clips[0], name="as slow as a glacier", rate=1.0))
         path = tmp_path / "a.muaavatar"
         write(path, replace(avatar, clips=clips, notes="two\nlines and a\ttab"), storage=storage)  # type: ignore[arg-type]

@@ -64,6 +64,7 @@ namespace Mua.Editor
             string[] expressions = avatar.Expressions == null ? new string[0] : avatar.Expressions.Names;
             string names = string.Join(", ", expressions);
             Row(text, "expressions", expressions.Length == 0 ? "none" : expressions.Length + ": " + names);
+            Row(text, "expressions' rules", Ruled(avatar.Expressions));
             int size = avatar.Texels.Size;
             Row(text, "texels", Format("{0} of {1} x {1}", avatar.Texels.Count, size));
             Row(text, "wavelet", Format("{0}, {1} levels", avatar.Wavelet.Name, avatar.Wavelet.Levels));
@@ -106,6 +107,17 @@ namespace Mua.Editor
                 string seconds = Format("{0:F1}", (double)clip.FrameCount / clip.Rate);
                 Row(text, clip.Name, Format("{0}", clip.FrameCount), Short(clip.Rate), seconds);
             }
+        }
+
+        private static string Ruled(Format.Expressions expressions)
+        {
+            if (expressions?.Rules == null)
+            {
+                return "none";
+            }
+            int[] rules = expressions.Rules.Integers.ToArray();
+            string[] ruled = expressions.Names.Where((_, e) => rules[e] != 0).ToArray();
+            return ruled.Length == 0 ? "none" : string.Join(", ", ruled);
         }
 
         private static string Ranks(Branch branch)

@@ -8,8 +8,8 @@ https://github.com/vrm-c/vrm-specification/blob/master/specification/VRMC_vrm-1.
 from dataclasses import replace
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
+from mua import rotation
 from mua.arrays import Array
 from mua.characters.bind_pose import Bind
 from mua.pose.expression_rules import LOOKS
@@ -44,7 +44,7 @@ def with_gaze(
 def _turn(way: str, degrees: float, outward: int) -> Array:
     """The rotation [3, 3] of an eye that looks one way; `outward` is 1 where that is towards +X."""
     axis = {"Out": (0, outward, 0), "In": (0, -outward, 0), "Up": (-1, 0, 0), "Down": (1, 0, 0)}[way]
-    return np.asarray(Rotation.from_rotvec(np.radians(degrees) * np.array(axis)).as_matrix())
+    return rotation.to_matrix(rotation.from_axis_angle(np.array(axis), np.radians(degrees)))
 
 
 def _gazing(scene: Scene, part: Part, bind: Bind, turns: list[tuple[str, int, Array]]) -> Part:

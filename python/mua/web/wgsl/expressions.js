@@ -854,6 +854,7 @@ fn upsampleRows_0( tile_5 : u32,  thread_2 : vec2<u32>,  rows_0 : ptr<function, 
     workgroupBarrier();
     var _S33 : vec4<f32> = batchAt_0(tile_5, thread_2);
     (*rows_0)[i32(2)] = _S33;
+    workgroupBarrier();
     var run_1 : vec2<u32> = tileRow_0(tile_5, thread_2.y);
     var _S34 : u32 = run_1.y;
     var _S35 : u32 = thread_2.x;
@@ -1386,6 +1387,7 @@ fn upsampleRows_0( tile_5 : u32,  thread_2 : vec2<u32>,  rows_0 : ptr<function, 
     workgroupBarrier();
     var _S33 : vec4<f32> = batchAt_0(tile_5, thread_2);
     (*rows_0)[i32(2)] = _S33;
+    workgroupBarrier();
     var run_1 : vec2<u32> = tileRow_0(tile_5, thread_2.y);
     var _S34 : u32 = run_1.y;
     var _S35 : u32 = thread_2.x;
