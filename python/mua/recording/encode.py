@@ -10,9 +10,9 @@ from mua import wavelets
 from mua.arrays import Array
 from mua.channels import ATTRIBUTES, CHANNELS
 from mua.errors import InputError
+from mua.files.npz import read_npz
 from mua.files.write import replacing
 from mua.recording.layout import Header
-from mua.recording.npz import read_npz
 from mua.texture.fill import Fill
 
 TENSOR = "; a tensor goes in as tensor.detach().cpu().numpy()"

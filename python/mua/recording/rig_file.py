@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 
 from mua.arrays import Array
+from mua.files.npz import read_npz
 from mua.files.write import replacing
 from mua.pose.skeleton import Skeleton
-from mua.recording.npz import read_npz
 from mua.rig.character import Mesh
 from mua.rig.expressions import Expressions
 from mua.rig.rig import Rig
