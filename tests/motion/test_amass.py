@@ -9,7 +9,10 @@ from scipy.spatial.transform import Rotation
 
 from mua.errors import InputError
 from mua.motion.amass import nominal_skeleton, read_amass
+from mua.motion.face import read_face, with_face
+from mua.motion.load import load_motions
 from mua.motion.source import SourceMotion
+from mua.pose.signed_expressions import UNIT
 
 BOUND = 64 * np.finfo(float).eps  # sine, cosine and one quaternion product
 
@@ -193,3 +196,33 @@ def test_rejects_truncation_at_every_offset(tmp_path: Path) -> None:
         path.write_bytes(content[:end])
         with pytest.raises(InputError, match=r"motion\.npz"):
             read_amass(path)
+
+
+@pytest.mark.parametrize("key", ["expressions", "expression", "face_expr"])
+def test_coefficients_of_a_face_move_pairs_of_expressions(tmp_path: Path, key: str) -> None:
+    coefficients = UNIT * np.array([[0, 0, 0.5], [0.2, 0, 0], [-0.4, 0, 0], [2, 0, 0], [0, 0, 0]])
+    path = write(tmp_path, **{key: coefficients})
+    source = read_amass(path)
+    assert source.expressions == ("Exp000+", "Exp000-", "Exp002+")
+    expected = np.array([[0, 0, 0.5], [0.2, 0, 0], [0, 0.4, 0], [1, 0, 0], [0, 0, 0]])
+    np.testing.assert_allclose(np.asarray(source.clip.expressions), expected)
+    assert any(f"{key}: 6.7 % of the coefficients are beyond 5" in note for note in source.notes)
+    np.testing.assert_allclose(read_face(path).weights, expected)
+    names = ("jawOpen", "Exp000-", "Exp000+")
+    (loaded,) = load_motions(path, source.skeleton, mapping=None, rate=120.0, face=names)
+    on_character = np.stack([np.zeros(5), expected[:, 1], expected[:, 0]], axis=1)
+    np.testing.assert_allclose(np.asarray(loaded.clip.expressions), on_character)
+    (clip,), notes = with_face([loaded.clip], path, names)
+    np.testing.assert_allclose(np.asarray(clip.expressions), on_character)
+    assert notes == ["motion.npz: the character has no expression for Exp002+."]
+
+
+def test_a_face_at_rest_is_none(tmp_path: Path) -> None:
+    source = read_amass(write(tmp_path, expressions=np.zeros((5, 100))))
+    assert (source.expressions, source.clip.expressions) == ((), None)
+    assert not any("coefficients" in note for note in source.notes)
+
+
+def test_refuses_a_face_of_another_length(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"motion\.npz: expression: the shape is \[4, 10\], expected \[5, "):
+        read_amass(write(tmp_path, expression=np.zeros((4, 10))))

@@ -3,6 +3,8 @@
 AMASS has Z up. Relatives (BEAT2, results of pose estimators) have Y up or, seen by a camera, Y down; none says so, but
 the trunk of a person who stands does.
 
+A face comes as coefficients of SMPL-X's expressions, which a character of that model has as pairs of expressions.
+
 The body model itself is not needed: retargeting asks a skeleton for names and rest directions only. NOMINAL holds rough
 offsets of an average adult in the models' rest pose (arms level, legs straight, facing +Z), rounded to centimetres.
 """
@@ -15,10 +17,12 @@ from pathlib import Path
 import numpy as np
 
 from mua import rotation
+from mua.arguments import finite_array
 from mua.arrays import Array
 from mua.errors import InputError
 from mua.motion.source import SourceMotion
 from mua.pose.clip import Clip
+from mua.pose.signed_expressions import UNIT, as_weights
 from mua.pose.skeleton import Skeleton
 
 # Joint, parent and offset in centimetres; sided joints are given for the left (+X) and mirrored. In the models' order.
@@ -68,6 +72,7 @@ SPLIT_KEYS = (("root_orient", "global_orient"), ("pose_body", "body_pose"))  # w
 HAND_KEYS = (("left_hand_pose",), ("right_hand_pose",))
 HANDS_KEY = "pose_hand"  # both hands in one array
 TRANSLATION_KEYS = ("trans", "transl", "smpl_trans", "root_trans")
+FACE_KEYS = ("expressions", "expression", "face_expr")  # of BEAT2, of pose estimators, of Motion-X
 SCALE_KEY = "smpl_scaling"  # of AIST++: units of its smpl_trans in a metre
 OF_AMASS = ("dmpls", "mocap_time_length", "markers_latent")  # only files of AMASS itself have these: Z is up
 RATE_KEYS = ("mocap_framerate", "mocap_frame_rate", "fps", "framerate", "frame_rate")
@@ -86,7 +91,8 @@ def read_amass(path: Path) -> SourceMotion:
     """Read axis angles [F, 3 J] or [F, J, 3] (radians), places [F, 3] (metres) and the frame rate.
 
     J is 22 (a body), 24 (SMPL), 52 (SMPL-H) or 55 (SMPL-X); `root_orient` and `pose_body`, or `global_orient` and
-    `body_pose`, do as well. Pickled content is never loaded.
+    `body_pose`, do as well. `expressions`, `expression` or `face_expr` [F, K] are the face's. Pickled
+    content is never loaded.
     Errors: InputError for an unreadable file, a missing key, another J, no frames, numbers that are not finite.
     """
     arrays = _load(path)
@@ -101,9 +107,12 @@ def read_amass(path: Path) -> SourceMotion:
     up, turn = ("", Z_UP_TO_Y_UP) if arrays.keys() & set(OF_AMASS) else _up(rotations[:, 0])
     rotations[:, 0] = rotation.multiply(turn, rotations[:, 0])
     pelvis = rotation.rotate(turn, translation + skeleton.bind_translations[0])
+    names, weights, of_face = _face(path, arrays, len(poses))
+    notes += of_face
     if up:
         notes += (f"{path.name}: {up}, unlike in AMASS; judged by how the body stands.",)
-    return SourceMotion(skeleton, Clip(path.stem, rate, rotations, skeleton.with_root(pelvis)), notes)
+    clip = Clip(path.stem, rate, rotations, skeleton.with_root(pelvis), expressions=weights)
+    return SourceMotion(skeleton, clip, notes, expressions=names)
 
 
 def _up(roots: Array) -> tuple[str, Array]:
@@ -134,7 +143,9 @@ def _load(path: Path) -> dict[str, Array]:
     try:
         with path.open("rb") as opened, np.load(opened, allow_pickle=False) as file:
             held = list(file)
-            arrays = {key: file[key] for key in (*known, *TRANSLATION_KEYS, SCALE_KEY, *RATE_KEYS) if key in held}
+            arrays = {
+                key: file[key] for key in (*known, *TRANSLATION_KEYS, SCALE_KEY, *RATE_KEYS, *FACE_KEYS) if key in held
+            }
             of_amass = dict.fromkeys((key for key in OF_AMASS if key in held), np.zeros(0))
             shapes = {key: file[key].shape for key in POSITIONS if key in held}
     except (OSError, ValueError, EOFError, AttributeError, TypeError, zipfile.BadZipFile, zlib.error) as error:
@@ -216,3 +227,20 @@ def _rate(path: Path, arrays: Mapping[str, Array]) -> tuple[float, tuple[str, ..
     if arrays[key].size != 1 or arrays[key].item() <= 0:
         raise InputError(f"{path}: {key}: expected one number above 0, found {arrays[key].tolist()}")
     return float(arrays[key].item()), ()
+
+
+def _face(
+    path: Path, arrays: Mapping[str, Array], frames: int
+) -> tuple[tuple[str, ...], Array | None, tuple[str, ...]]:
+    """The expressions that coefficients move, their weights [F, S], and a note where these are held to 1."""
+    key = _first(arrays, FACE_KEYS)
+    if key is None:
+        return (), None, ()
+    coefficients = finite_array(arrays[key], f"{path}: {key}", (frames, None))
+    pairs = [as_weights(f"Exp{number:03}", column) for number, column in enumerate(coefficients.T)]
+    moving = {name: weights for pair in pairs for name, weights in pair.items() if weights.any()}
+    if not moving:
+        return (), None, ()
+    beyond = np.mean(np.abs(coefficients) > UNIT)
+    note = f"{path.name}: {key}: {100 * beyond:.2g} % of the coefficients are beyond {UNIT:g} and are held to that."
+    return tuple(moving), np.stack([*moving.values()], axis=1), (note,) if beyond else ()
