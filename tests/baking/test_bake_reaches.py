@@ -77,6 +77,9 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> Path:
     rows = (f"00:00:0{k // 60}:{k % 60},1,{min(k / 4, 1)}\n" for k in range(120))  # at 60 Hz
     (directory / "talk.csv").write_text("Timecode,BlendShapeCount,JawOpen\n" + "".join(rows))
     (directory / "names.json").write_text(json.dumps({"jawOpen": "aa"}))
+    directions = np.zeros((16, 3, 20))
+    directions[:, 1, 10] = gltf_files.POINTS[:, 1] / 100  # the first of the expressions
+    np.savez(directory / "model.npz", v_template=gltf_files.POINTS, shapedirs=directions)
     for name in ("wave", "sway"):
         (directory / f"{name}.bvh").write_text(BVH.replace("spine", "thing"))
     for name, joint in (("spine", "spine"), ("head", "head")):

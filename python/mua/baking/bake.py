@@ -91,6 +91,10 @@ def bake(
         PathLike | Mapping[str, str] | None,
         Option("JSON file that gives expressions of the character other names.", default="as the file calls them"),
     ] = None,
+    smplx: Annotated[
+        PathLike | None,
+        Option("Model file (.npz) of SMPL-X, whose expressions a character of its mesh gets.", default="none"),
+    ] = None,
     mapping: Annotated[
         PathLike | Mapping[str, str] | None,
         Option(

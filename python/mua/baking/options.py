@@ -29,7 +29,7 @@ def bake_settings(options: Mapping[str, Any]) -> BakeSettings:
     """The settings that the options of `mua.bake` give; raises InputError for options that do not go together."""
     as_given = ("output", "device", "character", "teacher", "hold_out", "feet", "motion_range", "leave_out", "uv")
     settings = BakeSettings(
-        **{name: options[name] for name in (*as_given, "face", "storage", "clips")},
+        **{name: options[name] for name in (*as_given, "face", "smplx", "storage", "clips")},
         work=work_directory(options["output"], options["work"]),
         student=student_settings(options),
         motions=options["motion"],
@@ -48,6 +48,8 @@ def bake_settings(options: Mapping[str, Any]) -> BakeSettings:
         settings = _with_trained_teacher(settings, options)
     if settings.face is not None:
         require_face(settings.face)
+    if settings.smplx is not None:
+        require_file(settings.smplx)
     check_output(settings.output, settings.work)
     _check_motion_options(settings)
     return settings
@@ -78,7 +80,18 @@ def _check_budget(settings: BakeSettings) -> None:
 
 def _with_trained_teacher(settings: BakeSettings, options: Mapping[str, Any]) -> BakeSettings:
     """The settings of a bake whose teacher is, or is going to be, trained on images."""
-    for name in ("uv", "detail", "scale", "height", "facing", "turn", "leave_out", "alpha", "expression_names"):
+    for name in (
+        "uv",
+        "detail",
+        "scale",
+        "height",
+        "facing",
+        "turn",
+        "leave_out",
+        "alpha",
+        "expression_names",
+        "smplx",
+    ):
         if options[name] not in (None, (), {}, "auto", 0.0):
             raise InputError(
                 f"--{name.replace('_', '-')}: the capture's own capture.json says it; leave the option out"

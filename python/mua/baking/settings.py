@@ -37,6 +37,7 @@ class BakeSettings:
     leave_out: tuple[str, ...] = ()  # meshes, nodes or materials of the file that are no part of the character
     alphas: Alphas = field(default_factory=dict)  # how materials are transparent, where the file is wrong
     expression_names: Mapping[str, str] | None = None  # what expressions of the file are to be called
+    smplx: Path | None = None  # model of SMPL-X whose expressions the character gets
     uv: UvMode = "auto"
     detail: Detail = field(default_factory=dict)  # beyond what is finer by default
     size: FigureSize = AS_FOUND

@@ -35,6 +35,7 @@ def load_baked_character(settings: BakeSettings) -> Character:
         alphas=settings.alphas,
         facing=settings.facing,
         expression_names=settings.expression_names,
+        smplx=settings.smplx,
     )
 
 
@@ -49,6 +50,7 @@ def load_character(
     alphas: Alphas = NOTHING_SAID,
     facing: Facing = AS_SHOWN,
     expression_names: Mapping[str, str] | None = None,
+    smplx: Path | None = None,
 ) -> Character:
     """The character in the file at `path` less what `leave_out` names, or the procedural one where no path is given.
 
@@ -66,6 +68,7 @@ def load_character(
             alphas=alphas,
             facing=facing,
             expression_names=expression_names,
+            smplx=smplx,
         )
         require_names(str(path), [character.name], character.skeleton.names, ())
         return character
@@ -75,6 +78,8 @@ def load_character(
         raise InputError("--facing and --turn need a character from a file; give CHARACTER")
     if expression_names is not None:
         raise InputError("--expression-names: needs a character from a file; give CHARACTER")
+    if smplx is not None:
+        raise InputError(f"--smplx {smplx}: needs a character from a file; give CHARACTER")
     if leave_out:
         raise InputError(f"--leave-out {leave_out[0]}: needs a character from a file; give CHARACTER")
     for name, alpha in alphas.items():

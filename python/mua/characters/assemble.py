@@ -14,11 +14,12 @@ from mua.characters.collapsed import without_collapsed
 from mua.characters.correction import corrected
 from mua.characters.expression_file import with_expression_names
 from mua.characters.expressions import fingerprints, joined_targets, unfolding, with_weights
-from mua.characters.facing import AS_SHOWN, Facing
+from mua.characters.facing import AS_SHOWN, Facing, turn_about_y
 from mua.characters.gaze import GAZE, with_gaze
 from mua.characters.messages import UNHELD, Messages
 from mua.characters.outline import outlines
 from mua.characters.rigid_skeleton import rigid_skeleton, roles_of
+from mua.characters.smplx import with_pairs, with_smplx
 from mua.characters.winding import inside_out
 from mua.errors import InputError
 from mua.limits import MAX_INFLUENCES
@@ -57,15 +58,16 @@ def assemble(
     alphas: Alphas = NOTHING_SAID,
     facing: Facing = AS_SHOWN,
     expression_names: Mapping[str, str] | None = None,
+    smplx: Path | None = None,
 ) -> Surfaces:
     """Merge a scene's parts into one welded mesh on rigid joints, upright, facing +Z and in metres.
 
     `leave_out` names meshes, nodes or materials whose triangles are no part of the character; `alphas` says how
-    materials are transparent where the file is wrong, `expression_names` what its expressions are to be called.
+    materials are transparent where the file is wrong, `expression_names` what its expressions are to be called, and
+    `smplx` is the model whose expressions its mesh gets.
     Raises an InputError that names `path` where no skinned triangle is left, or where it holds no such name.
     """
     scene = with_alphas(without(scene, leave_out, path), alphas, path)
-    scene = with_expression_names(scene, expression_names or {}, path)
     if not any(len(part.faces) for part in scene.parts):
         still = any(note.startswith(UNHELD.partition("{")[0]) for note in scene.notes)
         advice = "; add a skeleton in Blender or with Mixamo" if still else ""
@@ -83,10 +85,15 @@ def assemble(
     )
     if change.moved:
         bind = bind_pose(scene)
-    gazing = with_gaze(scene, bind)
+    named = scene
+    if smplx is not None:
+        back = turn_about_y(facing.turn)
+        named = with_smplx(scene, smplx, lambda part: _place(scene, part, bind=bind)[0] @ back)
+    named = with_expression_names(with_pairs(named), expression_names or {}, path)
+    gazing = with_gaze(named, bind)
     if change.moved or gazing is not scene:
         mesh = _merge(gazing, bind)
-    looks = LOOKS if gazing is scene else (*LOOKS, *GAZE)
+    looks = LOOKS if gazing is named else (*LOOKS, *GAZE)
     scene = gazing
     size_notes = tuple(f"{note} {OTHER_SIZE}" for note in change.size_notes)
     mesh = _outward(_weld(mesh))
@@ -212,7 +219,6 @@ def weighted(weights: Array) -> Array:
 
 
 def _merge(scene: Scene, bind: Bind) -> _Mesh:
-    joint_of = {int(node): j for j, node in enumerate(bind.nodes)}
     columns: dict[str, list[Array]] = {
         name: [] for name in _Mesh.__annotations__ if name not in ("notes", "expressions")
     }
@@ -220,14 +226,13 @@ def _merge(scene: Scene, bind: Bind) -> _Mesh:
     targets: list[Target] = []
     vertex_count = uv_count = 0
     for part in scene.parts:
-        skin_joints = np.array([joint_of[int(node)] for node in scene.skins[part.skin].joints])
-        indices, weights, lost = limit_influences(skin_joints[part.joints], part.weights)
+        indices, weights, lost = limit_influences(_skin_joints(scene, part, bind)[part.joints], part.weights)
         if lost > LOST_WEIGHT:
             notes.append(
                 f"Mesh {part.name} has vertices with more than {MAX_INFLUENCES} influences; "
                 f"up to {100 * lost:.0f} % of a vertex's weight is dropped."
             )
-        vertices, mirrored = _place(scene, part, bind=bind, joints=skin_joints)
+        vertices, mirrored = _place(scene, part, bind=bind)
         turn = [0, 2, 1] if mirrored else [0, 1, 2]
         columns["groups"].append(np.full(len(vertices), part.group))
         columns["vertices"].append(vertices)
@@ -237,7 +242,7 @@ def _merge(scene: Scene, bind: Bind) -> _Mesh:
         columns["uv"].append(part.uv)
         columns["uv_faces"].append(np.where(part.uv_faces < 0, -1, part.uv_faces + uv_count)[:, turn])
         columns["face_material"].append(np.full(len(part.faces), part.material, np.int32))
-        targets += _moved(scene, part, vertices, bind=bind, joints=skin_joints, before=vertex_count)
+        targets += _moved(scene, part, vertices, bind=bind, before=vertex_count)
         colors = np.ones((len(part.faces), 3, 4)) if part.colors is None else part.colors
         columns["colors"].append(colors[:, turn])
         vertex_count += len(vertices)
@@ -247,7 +252,7 @@ def _merge(scene: Scene, bind: Bind) -> _Mesh:
     return _Mesh(**whole, expressions=expressions, notes=(*notes, *idle))
 
 
-def _moved(scene: Scene, part: Part, vertices: Array, *, bind: Bind, joints: Array, before: int) -> list[Target]:
+def _moved(scene: Scene, part: Part, vertices: Array, *, bind: Bind, before: int) -> list[Target]:
     """A part's targets in the bind pose, of vertices that are counted from `before`."""
     found = []
     for target in part.targets:
@@ -256,18 +261,24 @@ def _moved(scene: Scene, part: Part, vertices: Array, *, bind: Bind, joints: Arr
             there = replace(
                 part, positions=part.positions[at] + target.offsets, joints=part.joints[at], weights=part.weights[at]
             )
-            offsets = _place(scene, there, bind=bind, joints=joints)[0] - vertices[at]
+            offsets = _place(scene, there, bind=bind)[0] - vertices[at]
             found.append(Target(target.name, before + at, offsets))
         else:
             found.append(Target(target.name, at, target.offsets))
     return found
 
 
-def _place(scene: Scene, part: Part, *, bind: Bind, joints: Array) -> tuple[Array, bool]:
+def _skin_joints(scene: Scene, part: Part, bind: Bind) -> Array:
+    """The joints [n] of a part's skin among those of the bind pose, whose nodes ascend."""
+    return np.searchsorted(bind.nodes, scene.skins[part.skin].joints)
+
+
+def _place(scene: Scene, part: Part, *, bind: Bind) -> tuple[Array, bool]:
     """A part's vertices [N, 3] in the bind pose, and whether that mirrors its triangles.
 
     Skins bound in different poses or spaces meet here: each vertex is carried by its own weights.
     """
+    joints = _skin_joints(scene, part, bind)
     spaces = bind.matrices[joints] @ scene.skins[part.skin].inverse_binds
     weights = part.weights
     bound = np.zeros_like(part.positions)

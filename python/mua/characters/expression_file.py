@@ -44,6 +44,8 @@ def with_expression_names(scene: Scene, names: Mapping[str, str], path: Path) ->
     An expression that alone means its name already keeps its own.
     Errors: InputError for an expression that the file at `path` does not have.
     """
+    if not names:
+        return scene
     held = dict.fromkeys(target.name for part in scene.parts for target in part.targets)
     held |= dict.fromkeys(GAZE if scene.face_rules.eyes else ())  # has its own names
     for expression in names:

@@ -28,16 +28,23 @@ def read_surfaces(
     alphas: Alphas = NOTHING_SAID,
     facing: Facing = AS_SHOWN,
     expression_names: Mapping[str, str] | None = None,
+    smplx: Path | None = None,
 ) -> Surfaces:
     """Read a rigged character by its suffix, less the meshes, nodes or materials that `leave_out` names.
 
     `alphas` says how materials are transparent where the file is wrong, `expression_names` what expressions are to be
-    called.
+    called, and `smplx` is the model of SMPL-X whose expressions the mesh gets.
     Raises an InputError where the suffix is unknown, the file is missing, holds no mesh on a skeleton, or nothing has
     such a name.
     """
     surfaces = assemble(
-        _scene(path), path, leave_out=leave_out, alphas=alphas, facing=facing, expression_names=expression_names
+        _scene(path),
+        path,
+        leave_out=leave_out,
+        alphas=alphas,
+        facing=facing,
+        expression_names=expression_names,
+        smplx=smplx,
     )
     return resized(surfaces, size, path)
 
@@ -80,9 +87,16 @@ def read_character(
     alphas: Alphas = NOTHING_SAID,
     facing: Facing = AS_SHOWN,
     expression_names: Mapping[str, str] | None = None,
+    smplx: Path | None = None,
 ) -> Character:
     """Read a rigged, textured character and bring its materials into one atlas of `atlas_size` texels a side."""
     surfaces = read_surfaces(
-        path, size=size, leave_out=leave_out, alphas=alphas, facing=facing, expression_names=expression_names
+        path,
+        size=size,
+        leave_out=leave_out,
+        alphas=alphas,
+        facing=facing,
+        expression_names=expression_names,
+        smplx=smplx,
     )
     return build_atlas(surfaces, uv=uv, size=atlas_size, detail=detail)

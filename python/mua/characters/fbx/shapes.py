@@ -10,6 +10,7 @@ from mua.arrays import Array
 from mua.characters.fbx.bindings import array, get, items
 from mua.characters.messages import Messages
 from mua.errors import InputError
+from mua.pose.signed_expressions import as_weights
 from mua.scene import Target
 
 PERCENT = "DeformPercent"  # the property with a channel's weight
@@ -63,9 +64,10 @@ def read_weights(stack: Any, channels: Sequence[Any], times: Array) -> dict[str,
     for channel in channels:
         rest, anim = float(get(channel, "weight")), get(stack, "anim")
         values = np.array([ufbx.evaluate_blend_weight(anim, channel, time) for time in times.tolist()], float)
-        weights = np.clip(np.nan_to_num((values - rest) / (1 - rest)), 0, 1) if rest < 1 else np.zeros(len(times))
-        if weights.any():
-            found.setdefault(str(get(channel, "name")), weights)
+        weights = np.nan_to_num((values - rest) / (1 - rest)) if rest < 1 else np.zeros(len(times))
+        for name, own in as_weights(str(get(channel, "name")), weights).items():
+            if own.any():
+                found.setdefault(name, own)
     return found
 
 

@@ -12,6 +12,7 @@ from mua.characters.gltf.vrm import NO_VRM, Vrm
 from mua.characters.gltf.weights import weight_tracks
 from mua.characters.messages import Messages
 from mua.characters.node_tree import chain, compose
+from mua.pose.signed_expressions import as_weights
 from mua.scene import Motion
 
 RATE = 30.0  # frames per second that clips of a file are sampled at
@@ -57,7 +58,9 @@ def read_animations(
             continue
         frames = start + np.arange(int(np.floor((end - start) * RATE + 1e-3)) + 1) / RATE
         local = _local(document, tracks, frames, nodes=nodes, rest=rest)
-        weights = {expression: np.clip(track.at(frames)[:, 0], 0, 1) for expression, track in faces}
+        weights: dict[str, Array] = {}
+        for expression, track in faces:
+            weights |= as_weights(expression, track.at(frames)[:, 0])
         motions.append(Motion(name, RATE, chain(local, parents), float(start), weights))
     return tuple(motions), messages.notes()
 

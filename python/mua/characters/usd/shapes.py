@@ -8,6 +8,7 @@ from pxr import Usd, UsdSkel
 from mua.arrays import Array
 from mua.characters.messages import Messages
 from mua.errors import InputError
+from mua.pose.signed_expressions import as_weights
 from mua.scene import Target
 
 BETWEEN = "Shapes in between (inbetweens) are passed over; expressions move straight to the whole shape, of meshes: {}."
@@ -67,8 +68,8 @@ def read_weights(animations: Sequence[UsdSkel.AnimQuery], codes: Array) -> dict[
             continue
         rows = [animation.ComputeBlendShapeWeights(Usd.TimeCode(float(code))) for code in codes]
         values = np.array([row if row and len(row) == len(names) else [0.0] * len(names) for row in rows], float)
-        values = np.clip(np.nan_to_num(values), 0, 1)
-        for name, weights in zip(names, values.T, strict=True):
-            if weights.any():
-                found.setdefault(name, weights)
+        for name, weights in zip(names, np.nan_to_num(values).T, strict=True):
+            for own, moved in as_weights(name, weights).items():
+                if moved.any():
+                    found.setdefault(own, moved)
     return found
