@@ -120,7 +120,7 @@ def _expressive(
     """The part with a pair of targets for each direction, in the mesh's own space, from which `place` is linear."""
     steps = [place(replace(part, positions=part.positions + step)) - placed for step in np.eye(3)]
     own = np.linalg.solve(np.stack(steps, axis=2), directions)
-    targets = []
+    targets: list[Target] = []
     for number in range(directions.shape[2]):
         at = np.flatnonzero(directions[..., number].any(axis=1))
         targets += _pair(Target(f"Exp{number:03}", at, own[at, :, number]))
