@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from gltf_files import Glb
+from gltf_files import Glb, animate
 from named_figures import written_names
 from people import moving, person
 from scipy.spatial.transform import Rotation
@@ -26,6 +26,7 @@ from mua.motion.retarget import retarget
 from mua.motion.source import SourceMotion
 from mua.pose.clip import Clip
 from mua.pose.joint_names import roles
+from mua.pose.signed_expressions import UNIT
 from mua.pose.skeleton import Skeleton
 
 RATE = 30.0
@@ -107,18 +108,10 @@ def animated(skeleton: Skeleton, clip: Clip, names: dict[str, str] | None = None
         for joint, name in enumerate(skeleton.names)
     ]
     glb.json["scenes"] = [{"nodes": np.flatnonzero(skeleton.parents < 0).tolist()}]
-    times = glb.accessor(np.arange(len(clip)) / clip.rate, min=[0], max=[(len(clip) - 1) / clip.rate])
-    tracks = [("rotation", clip.rotations[:, joint][:, wxyz], joint) for joint in range(len(skeleton.names))]
-    tracks.append(("translation", clip.translations[:, skeleton.root], skeleton.root))
-    glb.json["animations"] = [
-        {
-            "name": clip.name,
-            "samplers": [{"input": times, "output": glb.accessor(values)} for _, values, _ in tracks],
-            "channels": [
-                {"sampler": i, "target": {"node": node, "path": path}} for i, (path, _, node) in enumerate(tracks)
-            ],
-        }
-    ]
+    tracks = [(joint, "rotation", clip.rotations[:, joint][:, wxyz]) for joint in range(len(skeleton.names))]
+    tracks.append((skeleton.root, "translation", clip.translations[:, skeleton.root]))
+    for joint, path, values in tracks:
+        animate(glb, joint, path, times=np.arange(len(clip)) / clip.rate, values=values, name=clip.name)
     return glb
 
 
@@ -145,18 +138,23 @@ HUMANOID = {  # bones of VRM by joints of `person`
 }
 
 
+def with_track(glb: Glb, path: str, values: Array, **node: Any) -> int:
+    """A further node, with a track of values at the times of the others; its number."""
+    nodes, animation = glb.json["nodes"], glb.json["animations"][0]
+    nodes.append(node)
+    nodes[0].setdefault("children", []).append(len(nodes) - 1)
+    animation["samplers"].append({"input": animation["samplers"][0]["input"], "output": glb.accessor(values)})
+    target = {"node": len(nodes) - 1, "path": path}
+    animation["channels"].append({"sampler": len(animation["samplers"]) - 1, "target": target})
+    return len(nodes) - 1
+
+
 def with_expressions(glb: Glb, **weights: Array) -> None:
     """Tracks of expressions as VRMA has them: the place along x of a node each."""
-    nodes, animation = glb.json["nodes"], glb.json["animations"][0]
     presets = {}
     for name, values in weights.items():
-        nodes.append({"name": name, "translation": [0, 0, 0]})
-        nodes[0].setdefault("children", []).append(len(nodes) - 1)
         places = np.stack([values, 0 * values, 0 * values], axis=1)
-        animation["samplers"].append({"input": animation["samplers"][0]["input"], "output": glb.accessor(places)})
-        target = {"node": len(nodes) - 1, "path": "translation"}
-        animation["channels"].append({"sampler": len(animation["samplers"]) - 1, "target": target})
-        presets[name] = {"node": len(nodes) - 1}
+        presets[name] = {"node": with_track(glb, "translation", places, name=name, translation=[0, 0, 0])}
     glb.json["extensions"]["VRMC_vrm_animation"]["expressions"] = {"preset": presets}
 
 
@@ -236,6 +234,17 @@ def test_expressions_move_the_nearest_of_the_avatar_and_others_are_counted(tmp_p
     np.testing.assert_allclose(weights, np.asarray(loaded), atol=4 * FLOAT)
 
 
+def test_shape_keys_of_smplx_move_either_of_a_pair(tmp_path: Path) -> None:
+    clip = moving(person())
+    made, values = animated(person(), clip), np.linspace(-1.5, 1.5, len(clip)) * [[UNIT], [1]]
+    made.json["meshes"] = [{"primitives": [], "extras": {"targetNames": ["Exp003", "jawOpen"]}}]
+    with_track(made, "weights", values.T.reshape(-1, 1), name="face", mesh=0)
+    path, names = made.save(tmp_path / "keys.glb"), ["Exp003+", "Exp003-", "jawOpen"]
+    found = np.array(browser_clip(tmp_path, person(size=0.8), path, expressions=names)["expressions"]).reshape(-1, 3)
+    expected = np.clip(values / [[UNIT], [1]], 0, 1)
+    np.testing.assert_allclose(found, np.stack([expected[0], expected[0, ::-1], expected[1]], axis=1), atol=8 * FLOAT)
+
+
 def test_the_gaze_of_a_vrm_animation_moves_what_the_package_moves_by_it(tmp_path: Path) -> None:
     source = person()
     clip = moving(source)
@@ -246,13 +255,8 @@ def test_the_gaze_of_a_vrm_animation_moves_what_the_package_moves_by_it(tmp_path
             Rotation.from_euler("x", np.linspace(30, -30, count - count // 2)[:, None], degrees=True).as_quat(),
         ]
     )
-    nodes, animation = made.json["nodes"], made.json["animations"][0]
-    nodes.append({"name": "gaze"})
-    nodes[0].setdefault("children", []).append(len(nodes) - 1)
-    animation["samplers"].append({"input": animation["samplers"][0]["input"], "output": made.accessor(turns)})
-    target = {"node": len(nodes) - 1, "path": "rotation"}
-    animation["channels"].append({"sampler": len(animation["samplers"]) - 1, "target": target})
-    made.json["extensions"]["VRMC_vrm_animation"]["lookAt"] = {"node": len(nodes) - 1}
+    gaze = with_track(made, "rotation", turns, name="gaze")
+    made.json["extensions"]["VRMC_vrm_animation"]["lookAt"] = {"node": gaze}
     path, names = made.save(tmp_path / "gaze.vrma"), ["lookUp", "eyeLookOutLeft", "eyeLookInLeft", "jawOpen"]
     found = browser_clip(tmp_path, person(size=0.8), path, expressions=names)
     weights = np.array(found["expressions"]).reshape(-1, 4)

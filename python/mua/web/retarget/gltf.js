@@ -264,6 +264,16 @@ function gazeAt(track, time) {
   return Object.fromEntries(shares.map(([name, angle]) => [name, Math.min(Math.max(angle / (Math.PI / 2), 0), 1)]));
 }
 
+/** The expressions of a morph target, with its value at weight 1: two for a coefficient of SMPL-X. Reference: python/mua/pose/signed_expressions.py. @param {string} name @returns {[string, number][]} */
+function pairOf(name) {
+  const [, coefficient] = /^(?:.*\.)?(Exp\d{3})$/.exec(name) ?? [];
+  if (!coefficient) return [[name, 1]];
+  return [
+    [`${coefficient}+`, 5],
+    [`${coefficient}-`, -5],
+  ];
+}
+
 /** Weights of expressions: of VRMA the place along x of each one's node and the turn of its gaze, of meshes those of morph targets that have names. @param {Document} document @param {Track[]} tracks @param {number[]} times @returns {import("./source.js").Expressions} */
 function expressionsOf(document, tracks, times) {
   /** @type {Map<string, (time: number) => number>} */
@@ -282,7 +292,8 @@ function expressionsOf(document, tracks, times) {
     if (track.path !== "weights") continue;
     const mesh = document.json.meshes?.[document.nodes[track.node].mesh];
     for (const [i, name] of (mesh?.extras?.targetNames ?? []).entries())
-      if (i < track.width && !found.has(name)) found.set(name, (time) => valueAt(track, time)[i]);
+      for (const [own, unit] of i < track.width ? pairOf(name) : [])
+        if (!found.has(own)) found.set(own, (time) => valueAt(track, time)[i] / unit);
   }
   const weights = times.flatMap((time) => Array.from(found.values(), (weight) => weight(time)));
   return { names: [...found.keys()], weights: Float32Array.from(weights) };
