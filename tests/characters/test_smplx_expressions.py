@@ -9,6 +9,7 @@ from characters.test_gltf_expressions import AHEAD, UP, assert_top_moves, names_
 from gltf_files import BONES, FLOAT_BOUND, POINTS, TRIANGLES, Glb, body, primitive, weighted
 
 from mua.arrays import Array
+from mua.baking.sources import load_character
 from mua.characters.facing import Facing, turn_about_y
 from mua.characters.read import read_surfaces
 from mua.errors import InputError
@@ -133,7 +134,9 @@ def test_a_file_that_is_not_the_characters_model_is_a_sentence(
     assert str(path) in str(error.value)
 
 
-def test_a_character_with_these_expressions_needs_no_model(tmp_path: Path) -> None:
+def test_a_model_is_refused_where_no_mesh_is_to_get_expressions(tmp_path: Path) -> None:
     character = with_targets(["Exp000"], [UP]).save(tmp_path / "hero.glb")
     with pytest.raises(InputError, match="has expressions of SMPL-X already; leave the option out"):
         read_surfaces(character, smplx=model(tmp_path)[0])
+    with pytest.raises(InputError, match=r"--smplx .*: needs a character from a file"):
+        load_character(None, uv="auto", seed=0, smplx=model(tmp_path)[0])
