@@ -13,6 +13,7 @@ from mua.atlas.surfaces import Surfaces
 from mua.characters.read import read_surfaces
 from mua.errors import InputError
 from mua.motion.read import read_motion
+from mua.pose.signed_expressions import UNIT
 
 # Float32 points of about 150 centimetres skinned by a chain of matrices: a dozen roundings.
 SKINNING_BOUND = 12 * 150 * 2**-23 * 0.01
@@ -308,6 +309,21 @@ def test_blend_shapes_become_expressions_with_their_weights(character: Path) -> 
     assert (np.diff(weights[:, 1]) > 0).all()
     (source,) = read_motion(path)
     assert source.expressions == ("wide",)
+
+
+def test_shape_keys_of_smplx_move_both_ways(character: Path) -> None:
+    def keyed(stage: Usd.Stage) -> None:
+        with_shapes(stage)
+        animation = next(UsdSkel.Animation(prim) for prim in stage.Traverse() if prim.IsA(UsdSkel.Animation))
+        animation.GetBlendShapesAttr().Set(["Exp000"])
+        weights = animation.GetBlendShapeWeightsAttr()
+        weights.Set([-UNIT / 2], weights.GetTimeSamples()[0])
+
+    (source,) = read_motion(edited(character, keyed))
+    assert source.expressions == ("Exp000+", "Exp000-")
+    weights = np.asarray(source.clip.expressions)
+    np.testing.assert_allclose(weights[0], [0, 0.5], atol=1e-6)
+    assert 0.9 / UNIT < weights[-1, 0] <= 1 / UNIT
 
 
 def test_blend_shapes_that_do_not_fit_are_named(character: Path) -> None:

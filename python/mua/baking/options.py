@@ -81,16 +81,8 @@ def _check_budget(settings: BakeSettings) -> None:
 def _with_trained_teacher(settings: BakeSettings, options: Mapping[str, Any]) -> BakeSettings:
     """The settings of a bake whose teacher is, or is going to be, trained on images."""
     for name in (
-        "uv",
-        "detail",
-        "scale",
-        "height",
-        "facing",
-        "turn",
-        "leave_out",
-        "alpha",
-        "expression_names",
-        "smplx",
+        *("uv", "detail", "scale", "height", "facing", "turn"),
+        *("leave_out", "alpha", "expression_names", "smplx"),
     ):
         if options[name] not in (None, (), {}, "auto", 0.0):
             raise InputError(

@@ -16,16 +16,8 @@ from mua.files.inputs import is_capture
 
 PANELS = {
     "Character": (
-        "scale",
-        "height",
-        "facing",
-        "turn",
-        "leave_out",
-        "alpha",
-        "expression_names",
-        "smplx",
-        "uv",
-        "detail",
+        *("scale", "height", "facing", "turn", "leave_out", "alpha"),
+        *("expression_names", "smplx", "uv", "detail"),
     ),
     "Motion": ("face", "mapping", "feet", "motion_range", "hold_out", "clips"),
     "Training": ("frames", "texels", "recipe", "storage", "seed", "device", "jobs", "work"),
