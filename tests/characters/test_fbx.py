@@ -16,6 +16,7 @@ from mua.characters.fbx.process import scenes_of
 from mua.characters.read import read_animation, read_surfaces
 from mua.errors import InputError
 from mua.motion.read import read_motion
+from mua.pose.signed_expressions import UNIT
 
 FRAMES = 7
 ANGLES = 9.0 * np.arange(FRAMES)  # degrees, of the spine about X
@@ -217,15 +218,21 @@ def test_a_bone_that_does_not_inherit_scale_keeps_its_size(tmp_path: Path) -> No
     np.testing.assert_allclose(found, expected, atol=BOUND)
 
 
+def blend_shape(fbx: Fbx, name: str, points: int, *, percent: float = 0.0) -> int:
+    """A shape that moves the first points of the only mesh by 1 along each axis; returns its channel."""
+    geometry = next(node.values[0] for node in fbx.objects if node.name == "Geometry")
+    shape = fbx.add("Deformer", "face", "BlendShape", to=geometry)
+    channel = fbx.add("Deformer", name, "BlendShapeChannel", fbx_files.Node("DeformPercent", (percent,)), to=shape)
+    indices = fbx_files.Node("Indexes", (np.arange(points, dtype=np.int32),))
+    fbx.add("Geometry", name, "Shape", indices, fbx_files.Node("Vertices", (np.ones(3 * points),)), to=channel)
+    return channel
+
+
 def test_dual_quaternions_are_noted_and_blend_shapes_read(tmp_path: Path) -> None:
     fbx = Fbx()
     bones = skeleton(fbx)
     skinned(fbx, bones, kind="DualQuaternion")
-    geometry = next(node.values[0] for node in fbx.objects if node.name == "Geometry")
-    shape = fbx.add("Deformer", "face", "BlendShape", to=geometry)
-    channel = fbx.add("Deformer", "smile", "BlendShapeChannel", fbx_files.Node("DeformPercent", (0.0,)), to=shape)
-    offsets = [fbx_files.Node("Indexes", (np.arange(2, dtype=np.int32),)), fbx_files.Node("Vertices", (np.ones(6),))]
-    fbx.add("Geometry", "smile", "Shape", *offsets, to=channel)
+    blend_shape(fbx, "smile", 2)
     read = read_surfaces(fbx.save(tmp_path / "body.fbx"))
     assert any("dual quaternions" in note for note in read.notes)
     assert_is_column(read, BOUND)
@@ -240,15 +247,25 @@ def test_dual_quaternions_are_noted_and_blend_shapes_read(tmp_path: Path) -> Non
 def test_blend_shapes_count_from_their_weights_at_rest(tmp_path: Path) -> None:
     fbx = Fbx()
     skinned(fbx, skeleton(fbx))
-    geometry = next(node.values[0] for node in fbx.objects if node.name == "Geometry")
-    shape = fbx.add("Deformer", "face", "BlendShape", to=geometry)
-    channel = fbx.add("Deformer", "smile", "BlendShapeChannel", fbx_files.Node("DeformPercent", (25.0,)), to=shape)
-    offsets = [fbx_files.Node("Indexes", (np.arange(16, dtype=np.int32),)), fbx_files.Node("Vertices", (np.ones(48),))]
-    fbx.add("Geometry", "smile", "Shape", *offsets, to=channel)
+    blend_shape(fbx, "smile", 16, percent=25.0)
     read = read_surfaces(fbx.save(tmp_path / "body.fbx"))
     assert read.expressions is not None
     np.testing.assert_allclose(read.expressions.offsets, 0.75, atol=BOUND)
     np.testing.assert_allclose(read.vertices[read.faces].min(axis=(0, 1)), POINTS.min(axis=0) + 0.25, atol=BOUND)
+
+
+def test_shape_keys_of_smplx_move_both_ways(tmp_path: Path) -> None:
+    fbx = Fbx()
+    skinned(fbx, skeleton(fbx))
+    channel = blend_shape(fbx, "Exp000", 16)
+    percent = 100 * UNIT * np.linspace(-1, 2, FRAMES)[:, None]
+    fbx.animate(fbx.stack("talk", FRAMES), channel, "DeformPercent", percent, ["DeformPercent"])
+    read = read_surfaces(fbx.save(tmp_path / "body.fbx"))
+    assert read.expressions is not None
+    assert read.expressions.names == ("Exp000+", "Exp000-")
+    np.testing.assert_allclose(np.abs(read.expressions.offsets), UNIT, atol=BOUND)
+    expected = np.clip([np.linspace(-1, 2, FRAMES), -np.linspace(-1, 2, FRAMES)], 0, 1).T
+    np.testing.assert_allclose(np.asarray(read.clips[0].expressions), expected, atol=1e-5)
 
 
 def test_hidden_meshes_are_left_out(tmp_path: Path) -> None:
