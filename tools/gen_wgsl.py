@@ -1,12 +1,12 @@
 """Write python/mua/web/wgsl, every kernel and draw for browsers; --check says whether it is up to date.
 
 A file of ComputeShaders or of the desktop player becomes an ES module with an object for each entry point: its WGSL,
-and what it binds by name.
+and what it binds by name. A module that is loaded on demand takes lines from an entry point that is loaded before.
 """
 
 import json
 import re
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +14,7 @@ import checkout  # noqa: F401
 from check_shaders import entry_points
 from compiled_folder import CompiledFolder
 from wgsl_compile import OPTIONS, Shader, translate
+from wgsl_small import with_references, without_references
 
 from mua.errors import InputError
 from mua.gpu import compile, compiled
@@ -26,10 +27,15 @@ OBJECT = """
 /** @type {{import("../shader.js").Shader}} */
 export const {entry} = {{
   ...{interface},
-  code: `{code}`,
+  code: {code},
 }};
 """
-PARSED = re.compile(r"^export const (\w+) = \{\n  \.\.\.(\{.*\}),\n  code: `([^`]*)`,\n\};", re.MULTILINE)
+IMPORTS = """
+import {{ withLines }} from "../shader.js";
+import {{ {entry} }} from "./{stem}.js";
+"""
+PARSED = re.compile(r"^export const (\w+) = \{\n  \.\.\.(\{.*\}),\n  code: (?:withLines\()?`([^`]*)`", re.MULTILINE)
+LENDERS = {"expressions": ("inverse_dwt", "UpsampleTexels")}  # of modules that are loaded on demand
 
 
 def sources() -> dict[str, str]:
@@ -38,25 +44,32 @@ def sources() -> dict[str, str]:
     for path, entry, stage in entry_points():
         files, options = compile.made_from(path, entry, stage)
         texts.setdefault(path.stem, []).append(compiled.digest(files.values(), options))
+    for stem, (lender, _) in LENDERS.items():
+        texts[stem] += texts[lender]
     return {f"{stem}.js": compiled.digest(digests, tuple(OPTIONS)) for stem, digests in texts.items()}
 
 
 def modules() -> dict[str, bytes]:
     """Each module, translated now; raises InputError where slangc is absent or refuses."""
+    shaders = {(path.stem, entry): translate(path, entry, stage) for path, entry, stage in entry_points()}
     found: dict[str, str] = {}
-    for path, entry, stage in entry_points():
-        header = HEADER.format(path.relative_to(ROOT).as_posix())
+    for path, entry, _ in entry_points():
+        lender = LENDERS.get(path.stem)
+        imports = IMPORTS.format(stem=lender[0], entry=lender[1]) if lender else ""
+        header = HEADER.format(path.relative_to(ROOT).as_posix()) + imports
         name = f"{path.stem}.js"
-        found[name] = found.get(name, header) + as_object(translate(path, entry, stage))
+        written = as_object(shaders[path.stem, entry], shaders[lender] if lender else None)
+        found[name] = found.get(name, header) + written
     return {name: text.encode() for name, text in found.items()}
 
 
-def as_object(shader: Shader) -> str:
+def as_object(shader: Shader, lender: Shader | None) -> str:
     """The JavaScript of one entry point."""
-    interface = json.dumps({"stage": shader.stage, "entry": shader.entry, **asdict(shader.interface)})
+    described = {"stage": shader.stage, "entry": shader.entry, **asdict(shader.interface)}
     if set("`$\\") & set(shader.code):
         raise InputError(f"{shader.entry}: the WGSL has a character that a template literal takes for its own")
-    return OBJECT.format(entry=shader.entry, interface=interface, code=shader.code)
+    code = f"withLines(`{with_references(shader.code, lender.code)}`, {lender.entry})" if lender else f"`{shader.code}`"
+    return OBJECT.format(entry=shader.entry, interface=json.dumps(described, separators=(",", ":")), code=code)
 
 
 def read(folder: Path = FOLDER) -> dict[tuple[str, str], Shader]:
@@ -66,6 +79,10 @@ def read(folder: Path = FOLDER) -> dict[tuple[str, str], Shader]:
         for entry, written, code in PARSED.findall(path.read_text()):
             described = json.loads(written)
             found[path.stem, entry] = Shader(entry, described["stage"], code, interface_of(described))
+    for (stem, entry), shader in found.items():
+        if stem in LENDERS:
+            code = without_references(shader.code, found[LENDERS[stem]].code)
+            found[stem, entry] = replace(shader, code=code)
     return found
 
 

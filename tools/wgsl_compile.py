@@ -9,6 +9,7 @@ from typing import Any
 
 import shader_compilers
 from shader_compilers import SLANG_STAGES, UNKNOWN_PRAGMA
+from wgsl_small import small
 from wgsl_source import with_atomics
 
 from mua.gpu import compile, glslang
@@ -47,7 +48,7 @@ def translate(path: Path, entry: str, stage: str) -> Shader:
         done = shader_compilers.run_slangc(given, folder)
         code = glslang.result(path, entry, output, done).decode()
         code = LONE_INTERPOLATION.sub("", code)
-        return Shader(entry, stage, _grouped(code, stage), _interface(json.loads(reflected.read_text()), code))
+        return Shader(entry, stage, small(_grouped(code, stage)), _interface(json.loads(reflected.read_text()), code))
 
 
 def _grouped(code: str, stage: str) -> str:

@@ -87,8 +87,8 @@ FAULTS = {
     "constants packed tightly": ("mlp_matmul", "MlpMatmul", moved),
     "half floats read as whole numbers": ("mlp_matmul", "MlpMatmul", ("unpack2x16float", "unpack2x16snorm")),
     "half floats not packed": ("inverse_dwt", "UpsampleTexels", ("pack2x16float", "pack2x16snorm")),
-    "bytes without their sign": ("blend_subbands", "BlendLl", ("(i32((word_1 <<", "(i32((word_1 >>")),
-    "a counter that adds nothing": ("splat_sort", "CountDigits", ("u32(1));\n        }", "u32(0));\n        }")),
+    "bytes without their sign": ("blend_subbands", "BlendLl", ("i32(a<<", "i32(a>>")),
+    "a counter that adds nothing": ("splat_sort", "CountDigits", (",1u);", ",0u);")),
     "a counter that is not cleared": ("splat_sort", "CountDigits", ("atomicStore(", "atomicAdd(")),
     "another size of group": ("splat_sort", "ScanDigits", ("@workgroup_size(256,", "@workgroup_size(128,")),
 }  # fmt: skip

@@ -26,9 +26,15 @@ import { AvatarError } from "./error.js";
 
 /** A shader whose groups hold so many elements of an array that they share, in place of the most that any avatar needs. @param {Shader} shader @param {string} array @param {number} count @returns {Shader} */
 export function withRoom(shader, array, count) {
-  const declared = new RegExp(`(var<workgroup> ${array}_\\d+ : array<.*, i32\\()(\\d+)`);
+  const declared = new RegExp(`(var<workgroup>${array}_\\d+:array<.*,)(\\d+)`);
   const code = shader.code.replace(declared, (_, before, most) => `${before}${Math.min(count, Number(most))}`);
   return { ...shader, code };
+}
+
+/** The code of a shader, of which lines are another's: 4-7 stands for its lines 4 to 6, from 0. @param {string} code @param {{code: string}} other */
+export function withLines(code, other) {
+  const lines = other.code.split("\n");
+  return code.replace(/^(\d+)-(\d+)$/gm, (_, first, end) => lines.slice(first, end).join("\n"));
 }
 
 const BLOCK = 16; // bytes, of which a constant buffer is a multiple

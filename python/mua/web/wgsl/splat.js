@@ -2,286 +2,39 @@
 
 /** @type {import("../shader.js").Shader} */
 export const SplatVert = {
-  ...{"stage": "vert", "entry": "SplatVert", "buffers": [{"name": "order", "binding": 0, "read_only": true, "scalar": "uint", "stride": 4}, {"name": "splats", "binding": 1, "read_only": true, "scalar": "uint", "stride": 16}], "constants": [{"name": "view_projection", "offset": 0, "scalar": "float", "shape": [4, 4], "strides": [4, 16], "used": true}, {"name": "screen", "offset": 64, "scalar": "float", "shape": [2], "strides": [4], "used": true}, {"name": "eye", "offset": 72, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "corners", "offset": 76, "scalar": "uint", "shape": [], "strides": [], "used": true}], "constants_binding": 2, "threads": [1, 1, 1]},
-  code: `struct _MatrixStorage_float4x4_ColMajorstd140_0
-{
-    @align(16) data_0 : array<vec4<f32>, i32(4)>,
-};
-
-struct SLANG_ParameterGroup_Constants_std140_0
-{
-    @align(16) view_projection_0 : _MatrixStorage_float4x4_ColMajorstd140_0,
-    @align(16) screen_0 : vec2<f32>,
-    @align(8) eye_0 : u32,
-    @align(4) corners_0 : u32,
-};
-
-@binding(2) @group(0) var<uniform> Constants_0 : SLANG_ParameterGroup_Constants_std140_0;
-@binding(0) @group(0) var<storage, read> order_0 : array<u32>;
-
-@binding(1) @group(0) var<storage, read> splats_0 : array<vec4<u32>>;
-
-fn colorScale_0( exponent_0 : u32) -> f32
-{
-    return f32((u32(1) << (exponent_0)));
-}
-
-fn unpackColor_0( words_0 : vec2<u32>,  eye_1 : u32) -> vec4<f32>
-{
-    var _S1 : u32 = words_0.x;
-    var _S2 : u32 = words_0.y;
-    var tint_0 : vec3<f32> = vec3<f32>((vec3<u32>((_S2 >> (u32(11))), (_S2 >> (u32(18))), (_S2 >> (u32(25)))) & (vec3<u32>(u32(127))))) - vec3<f32>(64.0f);
-    var _S3 : vec3<f32> = vec3<f32>((vec3<u32>(_S1, (_S1 >> (u32(10))), (_S1 >> (u32(20)))) & (vec3<u32>(u32(1023)))));
-    var _S4 : vec3<f32>;
-    if(eye_1 == u32(0))
-    {
-        _S4 = tint_0;
-    }
-    else
-    {
-        _S4 = (vec3<f32>(0) - tint_0);
-    }
-    return vec4<f32>(max(_S3 + _S4, vec3<f32>(vec3<i32>(i32(0)))) * vec3<f32>((colorScale_0((_S1 >> (u32(30)))) / 1023.0f)), f32((_S2 & (u32(2047)))) / 2047.0f);
-}
-
-fn halfAt_0( word_0 : u32,  lane_0 : u32) -> f32
-{
-    return (unpack2x16float(((((word_0 >> ((u32(16) * lane_0)))) & (u32(65535))))).x);
-}
-
-fn unpackHalves_0( word_1 : u32) -> vec2<f32>
-{
-    return vec2<f32>(halfAt_0(word_1, u32(0)), halfAt_0(word_1, u32(1)));
-}
-
-fn splatWide_0( deviations_0 : vec2<f32>) -> vec2<f32>
-{
-    return sqrt(deviations_0 * deviations_0 + vec2<f32>(0.10262155532836914f));
-}
-
-fn splatCorner_0( corner_0 : u32,  corners_1 : u32) -> vec2<f32>
-{
-    var _S5 : bool = corner_0 == u32(1);
-    var right_0 : bool;
-    if(_S5)
-    {
-        right_0 = true;
-    }
-    else
-    {
-        right_0 = corner_0 == u32(2);
-    }
-    if(right_0)
-    {
-        right_0 = true;
-    }
-    else
-    {
-        right_0 = corner_0 == u32(4);
-    }
-    var _S6 : bool = corner_0 == u32(2);
-    var below_0 : bool;
-    if(_S6)
-    {
-        below_0 = true;
-    }
-    else
-    {
-        below_0 = corner_0 == u32(4);
-    }
-    if(below_0)
-    {
-        below_0 = true;
-    }
-    else
-    {
-        below_0 = corner_0 == u32(5);
-    }
-    var _S7 : i32;
-    if(corners_1 == u32(3))
-    {
-        if(_S5)
-        {
-            _S7 = i32(3);
-        }
-        else
-        {
-            _S7 = i32(-1);
-        }
-        var _S8 : f32 = f32(_S7);
-        if(_S6)
-        {
-            _S7 = i32(3);
-        }
-        else
-        {
-            _S7 = i32(-1);
-        }
-        return vec2<f32>(_S8, f32(_S7));
-    }
-    if(right_0)
-    {
-        _S7 = i32(1);
-    }
-    else
-    {
-        _S7 = i32(-1);
-    }
-    var _S9 : f32 = f32(_S7);
-    if(below_0)
-    {
-        _S7 = i32(1);
-    }
-    else
-    {
-        _S7 = i32(-1);
-    }
-    return vec2<f32>(_S9, f32(_S7));
-}
-
-fn splatOffset_0( axis_0 : vec2<f32>,  wide_0 : vec2<f32>,  corner_1 : vec2<f32>) -> vec2<f32>
-{
-    var _S10 : f32 = wide_0.y;
-    return vec2<f32>(2.0150001049041748f) * (vec2<f32>(_S10) * corner_1 + vec2<f32>(((wide_0.x - _S10) * dot(axis_0, corner_1))) * axis_0);
-}
-
-fn splatShare_0( deviations_1 : vec2<f32>,  wide_1 : vec2<f32>) -> f32
-{
-    return 0.87046688795089722f * (deviations_1.x / wide_1.x) * (deviations_1.y / wide_1.y);
-}
-
-struct SplatVaryings_0
-{
-    @builtin(position) position_0 : vec4<f32>,
-    @location(0) offset_0 : vec2<f32>,
-    @interpolate(flat) @location(1) color_0 : vec4<f32>,
-};
-
-fn splatVertex_0( _S11 : u32,  _S12 : u32,  _S13 : u32,  _S14 : vec2<f32>,  _S15 : mat4x4<f32>) -> SplatVaryings_0
-{
-    var place_0 : u32;
-    if(_S12 == u32(3))
-    {
-        place_0 = _S11 / u32(3);
-    }
-    else
-    {
-        place_0 = _S11 / u32(6);
-    }
-    var splat_0 : u32 = u32(2) * order_0[place_0];
-    var head_0 : vec4<u32> = splats_0[splat_0];
-    var tail_0 : vec4<u32> = splats_0[splat_0 + u32(1)];
-    var color_1 : vec4<f32> = unpackColor_0(vec2<u32>(head_0.w, tail_0.x), _S13);
-    var _S16 : u32;
-    if(_S13 == u32(0))
-    {
-        _S16 = tail_0.y;
-    }
-    else
-    {
-        _S16 = tail_0.z;
-    }
-    var major_0 : vec2<f32> = unpackHalves_0(_S16);
-    var _S17 : f32 = length(major_0);
-    var _S18 : f32 = halfAt_0(tail_0.w, _S13);
-    var deviations_2 : vec2<f32> = vec2<f32>(_S17, _S18);
-    var axis_1 : vec2<f32> = major_0 / vec2<f32>(max(_S17, 1.17549435082228751e-38f));
-    var seen_0 : bool = _S18 > 0.0f;
-    var centre_0 : vec3<f32>;
-    if(seen_0)
-    {
-        centre_0 = (bitcast<vec3<f32>>((head_0.xyz)));
-    }
-    else
-    {
-        centre_0 = vec3<f32>(vec3<i32>(i32(0)));
-    }
-    var wide_2 : vec2<f32> = splatWide_0(deviations_2);
-    var corner_2 : vec2<f32> = splatCorner_0(_S11 - _S12 * place_0, _S12);
-    var clip_0 : vec4<f32> = (((vec4<f32>(centre_0, 1.0f)) * (_S15)));
-    var _S19 : f32 = clip_0.w;
-    var at_0 : vec2<f32> = clip_0.xy / vec2<f32>(_S19) + splatOffset_0(axis_1, wide_2, corner_2) * vec2<f32>(2.0f, -2.0f) / _S14;
-    var depth_0 : f32 = clamp(clip_0.z / _S19, 0.0f, 1.0f);
-    var varyings_0 : SplatVaryings_0;
-    varyings_0.position_0 = vec4<f32>(2.0f, 2.0f, 0.0f, 1.0f);
-    if(seen_0)
-    {
-        varyings_0.position_0 = vec4<f32>(at_0, depth_0, 1.0f);
-    }
-    varyings_0.offset_0 = corner_2;
-    varyings_0.color_0 = vec4<f32>(color_1.xyz, color_1.w * splatShare_0(deviations_2, wide_2));
-    return varyings_0;
-}
-
-@vertex
-fn SplatVert(@builtin(vertex_index) vertex_0 : u32) -> SplatVaryings_0
-{
-    return splatVertex_0(vertex_0, Constants_0.corners_0, Constants_0.eye_0, Constants_0.screen_0, mat4x4<f32>(Constants_0.view_projection_0.data_0[i32(0)][i32(0)], Constants_0.view_projection_0.data_0[i32(1)][i32(0)], Constants_0.view_projection_0.data_0[i32(2)][i32(0)], Constants_0.view_projection_0.data_0[i32(3)][i32(0)], Constants_0.view_projection_0.data_0[i32(0)][i32(1)], Constants_0.view_projection_0.data_0[i32(1)][i32(1)], Constants_0.view_projection_0.data_0[i32(2)][i32(1)], Constants_0.view_projection_0.data_0[i32(3)][i32(1)], Constants_0.view_projection_0.data_0[i32(0)][i32(2)], Constants_0.view_projection_0.data_0[i32(1)][i32(2)], Constants_0.view_projection_0.data_0[i32(2)][i32(2)], Constants_0.view_projection_0.data_0[i32(3)][i32(2)], Constants_0.view_projection_0.data_0[i32(0)][i32(3)], Constants_0.view_projection_0.data_0[i32(1)][i32(3)], Constants_0.view_projection_0.data_0[i32(2)][i32(3)], Constants_0.view_projection_0.data_0[i32(3)][i32(3)]));
-}
-
-`,
+  ...{"stage":"vert","entry":"SplatVert","buffers":[{"name":"order","binding":0,"read_only":true,"scalar":"uint","stride":4},{"name":"splats","binding":1,"read_only":true,"scalar":"uint","stride":16}],"constants":[{"name":"view_projection","offset":0,"scalar":"float","shape":[4,4],"strides":[4,16],"used":true},{"name":"screen","offset":64,"scalar":"float","shape":[2],"strides":[4],"used":true},{"name":"eye","offset":72,"scalar":"uint","shape":[],"strides":[],"used":true},{"name":"corners","offset":76,"scalar":"uint","shape":[],"strides":[],"used":true}],"constants_binding":2,"threads":[1,1,1]},
+  code: `struct _MatrixStorage_float4x4_ColMajorstd140_0{@align(16)data_0:array<vec4f,4>,};
+struct Constants{@align(16)view_projection_0:_MatrixStorage_float4x4_ColMajorstd140_0,@align(16)screen_0:vec2f,@align(8)eye_0:u32,@align(4)corners_0:u32,};
+@binding(2)@group(0)var<uniform>Constants_0:Constants;
+@binding(0)@group(0)var<storage,read>order_0:array<u32>;
+@binding(1)@group(0)var<storage,read>splats_0:array<vec4u>;
+fn colorScale_0(a:u32)->f32{return f32(1u<<a);}
+fn unpackColor_0(a:vec2u,b:u32)->vec4f{var c=a.x;var d=a.y;var e=vec3f(vec3u((d>>11u),(d>>18u),(d>>25u))&vec3u(127u))-vec3f(64f);var f=vec3f(vec3u(c,(c>>10u),(c>>20u))&vec3u(1023u));var g:vec3f;if(b==0u){g=e;}else{g=vec3f(0)-e;}return vec4f(max(f+g,vec3f())*vec3f(colorScale_0(c>>30u)/1023f),f32(d&2047u)/2047f);}
+fn halfAt_0(a:u32,b:u32)->f32{return unpack2x16float((a>>(16u*b))&65535u).x;}
+fn unpackHalves_0(a:u32)->vec2f{return vec2f(halfAt_0(a,0u),halfAt_0(a,1u));}
+fn splatWide_0(a:vec2f)->vec2f{return sqrt(a*a+vec2f(0.102621555f));}
+fn splatCorner_0(a:u32,b:u32)->vec2f{var c=a==1u;var d=c||(a==2u);d=d||(a==4u);var e=a==2u;var f=e||(a==4u);f=f||(a==5u);var g:i32;if(b==3u){g=select(i32(-1),3i,c);var h=f32(g);g=select(i32(-1),3i,e);return vec2f(h,f32(g));}g=select(i32(-1),1i,d);var i=f32(g);g=select(i32(-1),1i,f);return vec2f(i,f32(g));}
+fn splatOffset_0(a:vec2f,b:vec2f,c:vec2f)->vec2f{var d=b.y;return vec2f(2.015f)*(vec2f(d)*c+vec2f((b.x-d)*dot(a,c))*a);}
+fn splatShare_0(a:vec2f,b:vec2f)->f32{return 0.8704669f*(a.x/b.x)*(a.y/b.y);}
+struct SplatVaryings_0{@builtin(position)position_0:vec4f,@location(0)offset_0:vec2f,@interpolate(flat)@location(1)color_0:vec4f,};
+fn splatVertex_0(a:u32,b:u32,c:u32,d:vec2f,e:mat4x4f)->SplatVaryings_0{var f:u32;if(b==3u){f=a/3u;}else{f=a/6u;}var g=2u*order_0[f];var h=splats_0[g];var i=splats_0[g+1u];var j=unpackColor_0(vec2u(h.w,i.x),c);var k:u32;if(c==0u){k=i.y;}else{k=i.z;}var l=unpackHalves_0(k);var m=length(l);var n=halfAt_0(i.w,c);var o=vec2f(m,n);var p=l/vec2f(max(m,1.1754944e-38f));var q=n>0f;var r:vec3f;if(q){r=bitcast<vec3f>(h.xyz);}else{r=vec3f();}var s=splatWide_0(o);var t=splatCorner_0(a-b*f,b);var u=vec4f(r,1f)*e;var v=u.w;var w=u.xy/vec2f(v)+splatOffset_0(p,s,t)*vec2f(2f,-2f)/d;var x=clamp(u.z/v,0f,1f);var y:SplatVaryings_0;y.position_0=vec4f(2f,2f,0f,1f);if(q){y.position_0=vec4f(w,x,1f);}y.offset_0=t;y.color_0=vec4f(j.xyz,j.w*splatShare_0(o,s));return y;}
+@vertex fn SplatVert(@builtin(vertex_index)a:u32)->SplatVaryings_0{return splatVertex_0(a,Constants_0.corners_0,Constants_0.eye_0,Constants_0.screen_0,mat4x4f(Constants_0.view_projection_0.data_0[0][0],Constants_0.view_projection_0.data_0[1][0],Constants_0.view_projection_0.data_0[2][0],Constants_0.view_projection_0.data_0[3][0],Constants_0.view_projection_0.data_0[0][1],Constants_0.view_projection_0.data_0[1][1],Constants_0.view_projection_0.data_0[2][1],Constants_0.view_projection_0.data_0[3][1],Constants_0.view_projection_0.data_0[0][2],Constants_0.view_projection_0.data_0[1][2],Constants_0.view_projection_0.data_0[2][2],Constants_0.view_projection_0.data_0[3][2],Constants_0.view_projection_0.data_0[0][3],Constants_0.view_projection_0.data_0[1][3],Constants_0.view_projection_0.data_0[2][3],Constants_0.view_projection_0.data_0[3][3]));}`,
 };
 
 /** @type {import("../shader.js").Shader} */
 export const CountFrag = {
-  ...{"stage": "frag", "entry": "CountFrag", "buffers": [], "constants": [], "constants_binding": null, "threads": [1, 1, 1]},
-  code: `struct pixelOutput_0
-{
-    @location(0) output_0 : vec4<f32>,
-};
-
-struct pixelInput_0
-{
-    @location(0) offset_0 : vec2<f32>,
-    @interpolate(flat) @location(1) color_0 : vec4<f32>,
-};
-
-@fragment
-fn CountFrag( _S1 : pixelInput_0, @builtin(position) position_0 : vec4<f32>) -> pixelOutput_0
-{
-    var _S2 : pixelOutput_0 = pixelOutput_0( vec4<f32>(1.0f, 0.0f, 0.0f, 0.0f) );
-    return _S2;
-}
-
-`,
+  ...{"stage":"frag","entry":"CountFrag","buffers":[],"constants":[],"constants_binding":null,"threads":[1,1,1]},
+  code: `struct pixelOutput_0{@location(0)output_0:vec4f,};
+struct pixelInput_0{@location(0)offset_0:vec2f,@interpolate(flat)@location(1)color_0:vec4f,};
+@fragment fn CountFrag(a:pixelInput_0,@builtin(position)b:vec4f)->pixelOutput_0{var c=pixelOutput_0(vec4f(1f,0f,0f,0f));return c;}`,
 };
 
 /** @type {import("../shader.js").Shader} */
 export const SplatFrag = {
-  ...{"stage": "frag", "entry": "SplatFrag", "buffers": [], "constants": [], "constants_binding": null, "threads": [1, 1, 1]},
-  code: `struct SplatVaryings_0
-{
-     position_0 : vec4<f32>,
-     offset_0 : vec2<f32>,
-    color_0 : vec4<f32>,
-};
-
-fn splatFragment_0( varyings_0 : SplatVaryings_0) -> vec4<f32>
-{
-    var _S1 : vec2<f32> = varyings_0.offset_0;
-    var window_0 : vec2<f32> = saturate(vec2<f32>(1.0f) - _S1 * _S1);
-    var alpha_0 : f32 = varyings_0.color_0.w * window_0.x * window_0.y;
-    return vec4<f32>(varyings_0.color_0.xyz * vec3<f32>(alpha_0), alpha_0);
-}
-
-struct pixelOutput_0
-{
-    @location(0) output_0 : vec4<f32>,
-};
-
-struct pixelInput_0
-{
-    @location(0) offset_1 : vec2<f32>,
-    @interpolate(flat) @location(1) color_1 : vec4<f32>,
-};
-
-@fragment
-fn SplatFrag( _S2 : pixelInput_0, @builtin(position) position_1 : vec4<f32>) -> pixelOutput_0
-{
-    var _S3 : SplatVaryings_0 = SplatVaryings_0( position_1, _S2.offset_1, _S2.color_1 );
-    var _S4 : pixelOutput_0 = pixelOutput_0( splatFragment_0(_S3) );
-    return _S4;
-}
-
-`,
+  ...{"stage":"frag","entry":"SplatFrag","buffers":[],"constants":[],"constants_binding":null,"threads":[1,1,1]},
+  code: `struct SplatVaryings_0{position_0:vec4f,offset_0:vec2f,color_0:vec4f,};
+fn splatFragment_0(a:SplatVaryings_0)->vec4f{var b=a.offset_0;var c=saturate(vec2f(1f)-b*b);var d=a.color_0.w*c.x*c.y;return vec4f(a.color_0.xyz*vec3f(d),d);}
+struct pixelOutput_0{@location(0)output_0:vec4f,};
+struct pixelInput_0{@location(0)offset_1:vec2f,@interpolate(flat)@location(1)color_1:vec4f,};
+@fragment fn SplatFrag(a:pixelInput_0,@builtin(position)b:vec4f)->pixelOutput_0{var c=SplatVaryings_0(b,a.offset_1,a.color_1);var d=pixelOutput_0(splatFragment_0(c));return d;}`,
 };
