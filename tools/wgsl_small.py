@@ -5,7 +5,7 @@ A function of several entry points gets the same text in each, so that a module 
 
 import re
 from collections.abc import Iterator
-from itertools import count, pairwise, product
+from itertools import count, pairwise
 from string import ascii_letters
 
 import numpy as np
@@ -16,13 +16,13 @@ BLOCK = re.compile(r"\bSLANG_ParameterGroup_(\w+)_std140_0\b")
 TYPE = re.compile(r"\b(vec\d|mat\dx\d)<(f|u|i)32>")
 REFERENCE = re.compile(r"^(\d+)-(\d+)$", re.MULTILINE)
 OPEN, CLOSE = "([{", ")]}"
-JOINED = {"--", "++", "&&", "||", "//", "/*", "->"} | {
-    f"{sign}=" for sign in "<>=!+*/%&|^-"
-}  # other tokens than the two
+ASSIGNED = [f"{sign}=" for sign in "<>=!+*/%&|^-"]
+JOINED = {"--", "++", "&&", "||", "//", "/*", "->", *ASSIGNED}  # what two tokens without a space would be read as
 WORD = re.compile(r"\w[\w.]*")
 OPERATOR = re.compile(r"[<=!+*/%&|^-]+|>>|>=")  # not a lone >, which may end a type that is called
 NUMBER = re.compile(r"\d[\w.]*|i32\(-\d+\)")
 BEFORE_GROUP, AFTER_GROUP = {"(", "[", ",", "=", "return"}, {")", "]", ",", ";"}
+COMPARISONS = {"<", ">", ">=", "<<", ">>"}  # of two arguments, without parentheses, may be read as a template's list
 ENDLESS, LEAVE = ["for", "(", ";", ";", ")", "{", "if", "("], ["{", "}", "else", "{", "break", ";", "}"]
 END_OF_FUNCTION = ["return", ";", "}"]
 
@@ -47,18 +47,15 @@ def _short_literals(tokens: list[str]) -> list[str]:
             bare = found[-1] == "[" or tokens[at + 4].startswith(">")
             found.append(tokens[at + 2] + ("" if bare else token[0]))
             at += 4
-            continue
-        found.append(_short_float(token) if token[0].isdigit() and token[-1] == "f" else token)
-        at += 1
+        else:
+            found.append(_short_float(token) if re.fullmatch(r"\d.*f", token) else token)
+            at += 1
     return found
 
 
 def _short_float(literal: str) -> str:
-    return (
-        np.format_float_positional(np.float32(literal[:-1]), trim="-") + "f"
-        if "e" not in literal
-        else (np.format_float_scientific(np.float32(literal[:-1]), trim="-", exp_digits=1) + "f")
-    )
+    written = np.format_float_scientific if "e" in literal else np.format_float_positional
+    return written(np.float32(literal[:-1]), trim="-").replace("e-0", "e-") + "f"
 
 
 def _without_groups(tokens: list[str]) -> list[str]:
@@ -69,9 +66,7 @@ def _without_groups(tokens: list[str]) -> list[str]:
         before, inside, after = tokens[start - 1], tokens[start + 1 : end], tokens[end + 1 : end + 2]
         if tokens[start] != "(" or not (before in BEFORE_GROUP or OPERATOR.fullmatch(before)):
             continue
-        compares = "," in (before, *after) and not {"<", ">", ">=", "<<", ">>"}.isdisjoint(
-            inside
-        )  # or is a template's list
+        compares = "," in (before, *after) and not COMPARISONS.isdisjoint(inside)
         whole = before in BEFORE_GROUP and AFTER_GROUP.issuperset(after) and not compares
         if whole or _is_place(inside):
             dropped |= {start, end}
@@ -180,20 +175,20 @@ def _declarations(tokens: list[str]) -> Iterator[list[str]]:
 
 def _without_types(tokens: list[str]) -> list[str]:
     """A function without the types of variables that begin with a value, and without its last return."""
+    if "fn" not in tokens:
+        return tokens
     if tokens[-3:] == END_OF_FUNCTION:
         tokens = [*tokens[:-3], "}"]
-    text: list[str] = []
+    found: list[str] = []
     at = 0
-    inside = False
     while at < len(tokens):
-        text.append(tokens[at])
-        inside = inside or tokens[at] == "{"
-        if inside and tokens[at - 1] in ("var", "const") and tokens[at + 1] == ":":
+        found.append(tokens[at])
+        if tokens[at - 1] in ("var", "const") and tokens[at + 1] == ":":
             end = next(i for i in range(at, len(tokens)) if tokens[i] in ("=", ";"))
             if tokens[end] == "=":
                 at = end - 1
         at += 1
-    return text
+    return found
 
 
 def _named(tokens: list[str]) -> list[str]:
@@ -211,8 +206,8 @@ def _named(tokens: list[str]) -> list[str]:
 def _names() -> Iterator[str]:
     """The letters, then a1, b1 and so on, none of which is a word of WGSL."""
     yield from ascii_letters
-    for number, letter in product(count(1), ascii_letters):
-        yield f"{letter}{number}"
+    for number in count(1):
+        yield from (f"{letter}{number}" for letter in ascii_letters)
 
 
 def _text(tokens: list[str]) -> str:
