@@ -37,7 +37,7 @@ namespace Mua
             this.avatar = avatar;
             mlpMatmul = new MlpMatmul(resources.MlpMatmul);
             blendSubbands = new BlendSubbands(resources.BlendSubbands);
-            inverseDwt = new InverseDwt(resources.InverseDwt, resources.Expressions);
+            inverseDwt = new InverseDwt(resources.InverseDwt);
             expressions = new Expressions(resources.Expressions);
             try
             {
@@ -160,12 +160,12 @@ namespace Mua
             }
             else if (isGeometry)
             {
-                inverseDwt.BendTexels(
+                expressions.BendTexels(
                     commands, level, shown, branch.Channels, Size(levels), ll, texels, avatar.Faces, vertexBends);
             }
             else
             {
-                inverseDwt.LightTexels(commands, level, shown, branch.Channels, Size(levels), ll, texels);
+                expressions.LightTexels(commands, level, shown, branch.Channels, Size(levels), ll, texels);
             }
         }
 

@@ -50,8 +50,7 @@ def _turn(way: str, degrees: float, outward: int) -> Array:
 def _gazing(scene: Scene, part: Part, bind: Bind, turns: list[tuple[str, int, Array]]) -> Part:
     """The part with targets for those of its vertices that hang on an eye, by their weights there."""
     skin = scene.skins[part.skin]
-    joint_of = {int(node): joint for joint, node in enumerate(bind.nodes)}
-    joints = np.array([joint_of[int(node)] for node in skin.joints])
+    joints = np.searchsorted(bind.nodes, skin.joints)
     held = joints[part.joints]  # [N, K]
     targets = []
     for name, eye, turn in turns:

@@ -14,6 +14,7 @@ import numpy as np
 from mua import rotation
 from mua.arrays import Array
 from mua.channels import APPEARANCE, SH_C0
+from mua.limits import LARGEST
 
 LEAST = 1e-5  # metres: a triangle with an edge or a height below it has no frame and does not count
 MOST_STRETCH = 20.0  # of an axis, and its inverse the least
@@ -22,7 +23,6 @@ CONSTANT = slice(APPEARANCE.start, APPEARANCE.start + 3)  # colours that are the
 LINEAR = np.arange(14, 23).reshape(3, 3)[[2, 0, 1]].T  # channels [rgb, xyz] of colours' gradients over the direction
 SIGNS = np.array([-1, -1, 1], np.int8)  # of these channels
 MIDDLE = 0.5  # of colours, where their channels are 0
-LARGEST = np.finfo(np.float16).max
 SYMMETRIC = np.array([[4, 7, 8], [7, 5, 9], [8, 9, 6]])  # entries of P in a row
 
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from mua.arrays import Array
 from mua.channels import APPEARANCE
+from mua.limits import LARGEST
 
 TILE = 16  # texels along a side of a group of UpsampleTexels
 BATCH = 4  # channels that lie together in a row of texel_channels
@@ -73,8 +74,7 @@ def pack_channels(
     expressions made the colours.
     """
     padded = np.insert(texture, APPEARANCE.start, 0, axis=1)
-    largest = np.finfo(np.float16).max
-    halves = np.clip(padded, -largest, largest).astype("<f2").reshape(len(texture), ROWS, BATCH)
+    halves = np.clip(padded, -LARGEST, LARGEST).astype("<f2").reshape(len(texture), ROWS, BATCH)
     return np.ascontiguousarray(halves.swapaxes(0, 1)).view("<u4")
 
 

@@ -3,7 +3,7 @@ using UnityEngine.Rendering;
 
 namespace Mua
 {
-    /// <summary>Vertices that expressions move, and how those about them bend: ComputeShaders/expressions.compute.</summary>
+    /// <summary>Vertices that expressions move, and the texels that bend with them: ComputeShaders/expressions.compute.</summary>
     internal sealed class Expressions
     {
         private const string File = "expressions.compute";
@@ -20,16 +20,20 @@ namespace Mua
         private static readonly int Mesh = Shader.PropertyToID("mesh");
         private static readonly int TriangleBends = Shader.PropertyToID("triangle_bends");
         private static readonly int VertexBends = Shader.PropertyToID("vertex_bends");
+        private static readonly int Faces = Shader.PropertyToID("faces");
+        private static readonly int Texels = Shader.PropertyToID("texels");
         private static readonly int VertexCount = Shader.PropertyToID("vertex_count");
         private static readonly int TriangleCount = Shader.PropertyToID("triangle_count");
 
-        private readonly Kernel sumTargets, bendTriangles, bendVertices;
+        private readonly Kernel sumTargets, bendTriangles, bendVertices, bendTexels, lightTexels;
 
         public Expressions(ComputeShader shader)
         {
             sumTargets = new Kernel(shader, File, "SumTargets");
             bendTriangles = new Kernel(shader, File, "BendTriangles");
             bendVertices = new Kernel(shader, File, "BendVertices");
+            bendTexels = new Kernel(shader, File, "BendTexels");
+            lightTexels = new Kernel(shader, File, "LightTexels");
         }
 
         /// <summary>How far the weights move the vertices, which they are moved by.</summary>
@@ -67,6 +71,27 @@ namespace Mua
             bendVertices.Set(commands, VertexBends, vertexBends);
             bendVertices.Set(commands, VertexCount, targets.BentCount);
             Dispatch(commands, bendVertices, targets.BentCount);
+        }
+
+        /// <summary>InverseDwt.UpsampleTexels for geometry; the texels in reach bend as the vertices about them.</summary>
+        public void BendTexels(
+            CommandBuffer commands, LevelBuffers level, BranchLevel shown, int channels, int size, GraphicsBuffer ll,
+            GraphicsBuffer texelChannels, GraphicsBuffer faces, GraphicsBuffer vertexBends)
+        {
+            InverseDwt.SetUpsampling(commands, bendTexels, level, shown, channels, size, ll, texelChannels);
+            bendTexels.Set(commands, Faces, faces);
+            bendTexels.Set(commands, Texels, level.Texels);
+            bendTexels.Set(commands, VertexBends, vertexBends);
+            bendTexels.Dispatch(commands, level.TileCount, 1, 1);
+        }
+
+        /// <summary>InverseDwt.UpsampleTexels for appearance; the texels in reach are lit as BendTexels left it.</summary>
+        public void LightTexels(
+            CommandBuffer commands, LevelBuffers level, BranchLevel shown, int channels, int size, GraphicsBuffer ll,
+            GraphicsBuffer texelChannels)
+        {
+            InverseDwt.SetUpsampling(commands, lightTexels, level, shown, channels, size, ll, texelChannels);
+            lightTexels.Dispatch(commands, level.TileCount, 1, 1);
         }
 
         /// <summary>An engine refuses a dispatch of no groups: an expression may move nothing.</summary>

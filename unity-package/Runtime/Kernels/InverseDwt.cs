@@ -3,11 +3,10 @@ using UnityEngine.Rendering;
 
 namespace Mua
 {
-    /// <summary>Wavelet synthesis: ComputeShaders/inverse_dwt.compute, and the texels of a face: expressions.compute.</summary>
+    /// <summary>Wavelet synthesis: ComputeShaders/inverse_dwt.compute.</summary>
     internal sealed class InverseDwt
     {
         private const string File = "inverse_dwt.compute";
-        private const string ExpressionsFile = "expressions.compute";
         private const int CoarseTile = 16; // samples along a side that a group doubles
         private const int ChannelBatch = 4; // of a group of UpsampleTexels
 
@@ -29,18 +28,13 @@ namespace Mua
         private static readonly int TexelChannels = Shader.PropertyToID("texel_channels");
         private static readonly int TexelCount = Shader.PropertyToID("texel_count");
         private static readonly int FirstRow = Shader.PropertyToID("first_row");
-        private static readonly int Faces = Shader.PropertyToID("faces");
-        private static readonly int Texels = Shader.PropertyToID("texels");
-        private static readonly int VertexBends = Shader.PropertyToID("vertex_bends");
 
-        private readonly Kernel full, upsampleTexels, bendTexels, lightTexels;
+        private readonly Kernel full, upsampleTexels;
 
-        public InverseDwt(ComputeShader shader, ComputeShader expressions)
+        public InverseDwt(ComputeShader shader)
         {
             full = new Kernel(shader, File, "InverseDwt");
             upsampleTexels = new Kernel(shader, File, "UpsampleTexels");
-            bendTexels = new Kernel(expressions, ExpressionsFile, "BendTexels");
-            lightTexels = new Kernel(expressions, ExpressionsFile, "LightTexels");
         }
 
         /// <summary>One level, from planes of `size` to twice that.</summary>
@@ -73,28 +67,8 @@ namespace Mua
             upsampleTexels.Dispatch(commands, level.TileCount, 1, Kernel.Groups(channels, ChannelBatch));
         }
 
-        /// <summary>The same of geometry, where the texels in reach of expressions bend as the vertices about them.</summary>
-        public void BendTexels(
-            CommandBuffer commands, LevelBuffers level, BranchLevel shown, int channels, int size, GraphicsBuffer ll,
-            GraphicsBuffer texelChannels, GraphicsBuffer faces, GraphicsBuffer vertexBends)
-        {
-            SetUpsampling(commands, bendTexels, level, shown, channels, size, ll, texelChannels);
-            bendTexels.Set(commands, Faces, faces);
-            bendTexels.Set(commands, Texels, level.Texels);
-            bendTexels.Set(commands, VertexBends, vertexBends);
-            bendTexels.Dispatch(commands, level.TileCount, 1, 1);
-        }
-
-        /// <summary>The same of appearance, where the texels in reach are lit as BendTexels left it.</summary>
-        public void LightTexels(
-            CommandBuffer commands, LevelBuffers level, BranchLevel shown, int channels, int size, GraphicsBuffer ll,
-            GraphicsBuffer texelChannels)
-        {
-            SetUpsampling(commands, lightTexels, level, shown, channels, size, ll, texelChannels);
-            lightTexels.Dispatch(commands, level.TileCount, 1, 1);
-        }
-
-        private static void SetUpsampling(
+        /// <summary>What a kernel that makes texels needs of a branch, from planes of `size`.</summary>
+        public static void SetUpsampling(
             CommandBuffer commands, Kernel kernel, LevelBuffers level, BranchLevel shown, int channels, int size,
             GraphicsBuffer ll, GraphicsBuffer texelChannels)
         {
