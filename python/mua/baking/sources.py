@@ -2,14 +2,14 @@
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Unpack
 
 from mua.asset.storable import require_names
 from mua.atlas.detail import Detail, UvMode
 from mua.baking.settings import BakeSettings
-from mua.characters.alpha import NOTHING_SAID, Alphas
-from mua.characters.facing import AS_SHOWN, Facing
+from mua.characters.facing import AS_SHOWN
 from mua.characters.figure_size import AS_FOUND, FigureSize
-from mua.characters.read import read_character
+from mua.characters.read import Reading, read_character
 from mua.errors import InputError
 from mua.motion.face import with_face
 from mua.motion.load import counted, load_motions, unique_names
@@ -46,11 +46,7 @@ def load_character(
     seed: int,
     detail: Detail | None = None,
     size: FigureSize = AS_FOUND,
-    leave_out: Sequence[str] = (),
-    alphas: Alphas = NOTHING_SAID,
-    facing: Facing = AS_SHOWN,
-    expression_names: Mapping[str, str] | None = None,
-    smplx: Path | None = None,
+    **reading: Unpack[Reading],
 ) -> Character:
     """The character in the file at `path` less what `leave_out` names, or the procedural one where no path is given.
 
@@ -58,31 +54,20 @@ def load_character(
     and for names that no avatar file may have.
     """
     if path is not None:
-        character = read_character(
-            path,
-            uv=uv,
-            atlas_size=ATLAS,
-            detail=detail,
-            size=size,
-            leave_out=leave_out,
-            alphas=alphas,
-            facing=facing,
-            expression_names=expression_names,
-            smplx=smplx,
-        )
+        character = read_character(path, uv=uv, atlas_size=ATLAS, detail=detail, size=size, **reading)
         require_names(str(path), [character.name], character.skeleton.names, ())
         return character
     if size != AS_FOUND:
         raise InputError("--scale and --height need a character from a file; give CHARACTER")
-    if facing != AS_SHOWN:
+    if reading.get("facing", AS_SHOWN) != AS_SHOWN:
         raise InputError("--facing and --turn need a character from a file; give CHARACTER")
-    if expression_names is not None:
+    if reading.get("expression_names") is not None:
         raise InputError("--expression-names: needs a character from a file; give CHARACTER")
-    if smplx is not None:
+    if (smplx := reading.get("smplx")) is not None:
         raise InputError(f"--smplx {smplx}: needs a character from a file; give CHARACTER")
-    if leave_out:
+    if leave_out := reading.get("leave_out"):
         raise InputError(f"--leave-out {leave_out[0]}: needs a character from a file; give CHARACTER")
-    for name, alpha in alphas.items():
+    for name, alpha in reading.get("alphas", {}).items():
         raise InputError(f"--alpha {name}={alpha}: needs a character from a file; give CHARACTER")
     from mua.teachers.procedural import procedural_character  # not to be loaded for a file's sake
 

@@ -2,14 +2,15 @@
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import TypedDict, Unpack
 
 from mua.atlas.detail import Detail, UvMode
 from mua.atlas.surfaces import Surfaces
 from mua.atlas.uv import build_atlas
-from mua.characters.alpha import NOTHING_SAID, Alphas
+from mua.characters.alpha import Alphas
 from mua.characters.animation import Animation
 from mua.characters.assemble import assemble
-from mua.characters.facing import AS_SHOWN, Facing
+from mua.characters.facing import Facing
 from mua.characters.fbx.read import read_fbx, read_fbx_animation
 from mua.characters.figure_size import AS_FOUND, FigureSize
 from mua.characters.formats import ANIMATIONS, FBX, GLTF, SKELETOOL, SKELETOOL_MOTION, USD, require_scene
@@ -20,33 +21,28 @@ from mua.rig.character import Character
 from mua.scene import Scene
 
 
+class Reading(TypedDict, total=False):
+    """How a character's file is to be read, besides as it stands."""
+
+    leave_out: Sequence[str]  # meshes, nodes or materials that are no part of the character
+    alphas: Alphas  # how materials are transparent where the file is wrong
+    facing: Facing
+    expression_names: Mapping[str, str] | None  # what expressions are to be called
+    smplx: Path | None  # the model of SMPL-X whose expressions the mesh gets
+
+
 def read_surfaces(
     path: Path,
     *,
     size: FigureSize = AS_FOUND,
-    leave_out: Sequence[str] = (),
-    alphas: Alphas = NOTHING_SAID,
-    facing: Facing = AS_SHOWN,
-    expression_names: Mapping[str, str] | None = None,
-    smplx: Path | None = None,
+    **reading: Unpack[Reading],
 ) -> Surfaces:
-    """Read a rigged character by its suffix, less the meshes, nodes or materials that `leave_out` names.
+    """Read a rigged character by its suffix.
 
-    `alphas` says how materials are transparent where the file is wrong, `expression_names` what expressions are to be
-    called, and `smplx` is the model of SMPL-X whose expressions the mesh gets.
     Raises an InputError where the suffix is unknown, the file is missing, holds no mesh on a skeleton, or nothing has
     such a name.
     """
-    surfaces = assemble(
-        _scene(path),
-        path,
-        leave_out=leave_out,
-        alphas=alphas,
-        facing=facing,
-        expression_names=expression_names,
-        smplx=smplx,
-    )
-    return resized(surfaces, size, path)
+    return resized(assemble(_scene(path), path, **reading), size, path)
 
 
 def _scene(path: Path) -> Scene:
@@ -83,20 +79,7 @@ def read_character(
     atlas_size: int = 2048,
     detail: Detail | None = None,
     size: FigureSize = AS_FOUND,
-    leave_out: Sequence[str] = (),
-    alphas: Alphas = NOTHING_SAID,
-    facing: Facing = AS_SHOWN,
-    expression_names: Mapping[str, str] | None = None,
-    smplx: Path | None = None,
+    **reading: Unpack[Reading],
 ) -> Character:
     """Read a rigged, textured character and bring its materials into one atlas of `atlas_size` texels a side."""
-    surfaces = read_surfaces(
-        path,
-        size=size,
-        leave_out=leave_out,
-        alphas=alphas,
-        facing=facing,
-        expression_names=expression_names,
-        smplx=smplx,
-    )
-    return build_atlas(surfaces, uv=uv, size=atlas_size, detail=detail)
+    return build_atlas(read_surfaces(path, size=size, **reading), uv=uv, size=atlas_size, detail=detail)
