@@ -109,10 +109,10 @@ def mua_train(command: Commands, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
     return train
 
 
-@pytest.fixture(scope="session")
-def kept_atlases() -> Iterator[None]:
+@pytest.fixture(scope="session", autouse=True)
+def _kept_atlases() -> Iterator[None]:
     """Characters that were read before are read with the atlas that was built for them then."""
-    from atlases import keep_atlases  # here, because few tests need one
+    from atlases import keep_atlases  # after mua.cli
 
     with pytest.MonkeyPatch.context() as patch:
         keep_atlases(patch)

@@ -20,8 +20,6 @@ from mua.fidelity.splats import SplatPainter
 from mua.rig.character import Character
 from mua.teachers.simulated.still import StillTeacher
 
-pytestmark = pytest.mark.usefixtures("kept_atlases")
-
 TEXELS = 192
 ROUNDED = 64 * 2**-24  # colours of some splats over each other, of channels that lie in memory in another order
 ONLY_THERE = faces._patched

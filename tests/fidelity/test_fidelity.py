@@ -31,8 +31,6 @@ from mua.kernels.splat_project import LEAST_OPACITY
 from mua.rig.character import Character
 from mua.scene import Material, Part, Source
 
-pytestmark = pytest.mark.usefixtures("kept_atlases")
-
 SIDE = 9  # pixels, odd: a pixel's middle is on the axis
 AHEAD = Camera(np.eye(4), np.diag([1.0, 1.0, 0.5, 1.0]), (SIDE, SIDE))  # sees -1..1; what has more z is behind
 EIGHT_BITS = 1 / 255
