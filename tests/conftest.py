@@ -120,6 +120,14 @@ def _kept_atlases() -> Iterator[None]:
 
 
 @pytest.fixture
+def first_try(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Charts may lie anywhere: the first layout is taken."""
+    from mua.atlas import packing  # here, because few tests need it
+
+    monkeypatch.setattr(packing, "TRIES", packing.TRIES[:1])
+
+
+@pytest.fixture
 def packages(tmp_path: Path) -> list[Path]:
     """Two small UPM packages that keep every rule."""
     import upm_files  # here, because few tests need the tools
