@@ -1,7 +1,8 @@
 """Fixtures shared by all tests."""
 
+import gc
 import os
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -26,6 +27,17 @@ if TYPE_CHECKING:
     from mua.gpu import Device
     from mua.recording import Recording
     from mua_research.system import TrainingFrames
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection() -> Generator[None, object, object]:
+    """Spare the garbage collector what lives as long as the run: modules and tests, a million objects."""
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.enable()
+        gc.freeze()
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: pytest.Config) -> None:
@@ -97,14 +109,22 @@ def mua_train(command: Commands, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
     return train
 
 
-@pytest.fixture(scope="session")
-def kept_atlases() -> Iterator[None]:
+@pytest.fixture(scope="session", autouse=True)
+def _kept_atlases() -> Iterator[None]:
     """Characters that were read before are read with the atlas that was built for them then."""
-    from atlases import keep_atlases  # here, because few tests need one
+    from atlases import keep_atlases  # after mua.cli
 
     with pytest.MonkeyPatch.context() as patch:
         keep_atlases(patch)
         yield
+
+
+@pytest.fixture
+def first_try(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Charts may lie anywhere: the first layout is taken."""
+    from mua.atlas import packing  # here, because few tests need it
+
+    monkeypatch.setattr(packing, "TRIES", packing.TRIES[:1])
 
 
 @pytest.fixture

@@ -13,6 +13,8 @@ from mua.atlas.uv import build_atlas
 from mua.rig.expressions import Expressions
 from mua.rig.texel_map import build_texel_map
 
+pytestmark = pytest.mark.usefixtures("first_try")
+
 SIZE = 256
 WHOLE = uv_map(1, 1, at=(0, 0))
 NOISE = np.random.default_rng(0).integers(0, 256, (64, 64, 4), dtype=np.uint8) | np.array([0, 0, 0, 255], np.uint8)

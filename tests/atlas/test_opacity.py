@@ -16,6 +16,8 @@ from mua.scene import AlphaMode, Wrap, wrapped
 from mua.teachers.simulated.texels import MOST_CLEAR
 from mua.texture.albedo import sample_albedo
 
+pytestmark = pytest.mark.usefixtures("first_try")
+
 WHOLE = uv_map(1, 1, at=(0, 0))
 RED, GREEN = (200, 30, 20), (0, 255, 0)
 ROUNDED = 1  # in 255ths

@@ -17,7 +17,6 @@ from commands import Commands
 from people import person, walk
 from reached_options import FIGURE, MAPPED, REACHES, WALK, Late
 
-from mua.atlas import packing
 from mua.baking import check, pipeline
 from mua.baking.distillation import Distillation
 from mua.baking.settings import BakeSettings
@@ -27,6 +26,8 @@ from mua.fidelity import fitting
 from mua.pose.clip import Clip
 from mua.recording import PlannedClip
 from mua.rig.character import Character
+
+pytestmark = pytest.mark.usefixtures("first_try")
 
 BAKED = (
     "output",
@@ -99,7 +100,6 @@ def run(
 ) -> Callable[..., Late]:
     """The command up to its late stages, with arguments."""
     monkeypatch.chdir(files)
-    monkeypatch.setattr(packing, "TRIES", packing.TRIES[:1])  # charts may lie anywhere
     monkeypatch.setattr(torch.cuda, "is_available", lambda: True)  # so that --device cpu is a choice
 
     def bake(*arguments: str) -> Late:

@@ -16,8 +16,6 @@ from mua.teachers.trained import settings as teaching
 from mua.teachers.trained.folder import FILE, WEIGHTS, teacher_bytes
 from mua.training.schedule import Schedule
 
-pytestmark = pytest.mark.usefixtures("kept_atlases")
-
 
 @pytest.fixture(scope="module")
 def capture(tmp_path_factory: pytest.TempPathFactory) -> Path:

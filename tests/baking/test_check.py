@@ -25,8 +25,6 @@ from mua.motion.match import JointPair
 from mua.motion.quality import MotionQuality
 from mua.motion.reach import Reach
 
-pytestmark = pytest.mark.usefixtures("kept_atlases")
-
 app = typer.Typer()
 app.command()(main)
 

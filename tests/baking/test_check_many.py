@@ -10,8 +10,6 @@ from commands import Commands
 from mua.baking import check as checks
 from mua.fidelity.compare import Fidelity
 
-pytestmark = pytest.mark.usefixtures("kept_atlases")
-
 
 @pytest.fixture
 def characters(tmp_path: Path) -> Path:

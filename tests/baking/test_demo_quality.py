@@ -1,9 +1,10 @@
 """The demo's student explains what it did when these bars were set, with room for noise between machines.
 
-About a minute on two cores: the one test of the default run that trains a student worth looking at.
+The one test of the default run that trains a student worth looking at.
 """
 
 import sys
+from dataclasses import replace
 from functools import reduce
 from operator import add
 from pathlib import Path
@@ -33,23 +34,26 @@ sys.path.append(str(Path(__file__).parents[1] / "parity"))
 from frame_bounds import POSITION_BOUND
 from frame_errors import PosedFrame
 
-# Shares of the variance about the mean texture: 3 points below what was found on training frames, 8 on unseen motion.
+FRAMES = 60  # of `make demo`
+# Shares of the variance about the mean texture: 3 points below what was found on training frames, 8 on unseen motion,
+# or what 240 frames have to reach, where that is more.
 LEAST = {
-    "offset": (0.80, 0.59),
-    "rotation": (0.92, 0.83),
-    "scale": (0.92, 0.82),
+    "offset": (0.80, 0.67),
+    "rotation": (0.92, 0.84),
+    "scale": (0.92, 0.84),
     "SH": (0.90, 0.85),
     "mesh": (0.94, 0.77),
 }
-LEAST_PSNR = {"training": 55.2, "held out": 55.9}  # dB of the file beside its teacher, 0.4 below what was found
+LEAST_PSNR = {"training": 55.2, "held out": 56.5}  # dB of the file beside its teacher, 0.4 below what was found
 FARTHEST = 0.1  # metres, of a splat in any pose from its place on the template
 RANDOM_POSES = 8
 LOST = 0.03  # of what the best coefficients would explain, by the MLPs' own on training frames
 
 
 def test_student_explains_its_teacher_and_looks_like_it(tmp_path: Path, device: Device) -> None:
-    """As `mua-bake --preset tiny` does, with all of its frames. One test, since workers bake each for themselves."""
-    baked = bake(BakeSettings(tmp_path / "a.muaavatar", tmp_path / "work", preset("tiny"), "cpu", jobs=2), Silent())
+    """As `make demo` bakes it. One test, since workers bake each for themselves."""
+    demo = replace(preset("tiny"), frames=FRAMES)
+    baked = bake(BakeSettings(tmp_path / "a.muaavatar", tmp_path / "work", demo, "cpu", jobs=2), Silent())
     errors = dict(baked.errors)
     assert not missed_on_unseen_motion(errors)
     assert not missed_by_a_stage(errors[TRAINING])

@@ -20,8 +20,6 @@ from mua.errors import InputError
 from mua.fidelity.strips import CAPTION
 from mua.pose.clip import Clip, is_range
 
-pytestmark = pytest.mark.usefixtures("kept_atlases")
-
 
 def bake_settings(directory: Path, *, frames: int = 240, motion_range: MotionRange = "full") -> BakeSettings:
     student = replace(SMALL, frames=frames)

@@ -32,8 +32,6 @@ from mua.teachers.trained.teacher import TrainedTeacher
 from mua.teachers.trained.template_training import TemplateSettings, TemplateWeights
 from mua.training.schedule import Schedule
 
-pytestmark = pytest.mark.usefixtures("kept_atlases")
-
 TEXELS = 64
 OPTIONS = ("--texels", str(TEXELS), "--steps", "3")
 Teach = Callable[..., Ended]

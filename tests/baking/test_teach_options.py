@@ -31,8 +31,6 @@ from mua.teachers.trained.image_losses import ImageLoss
 from mua.teachers.trained.template_training import TemplateSettings
 from mua.training.schedule import Schedule
 
-pytestmark = pytest.mark.usefixtures("kept_atlases")
-
 TEXELS, STEPS = 64, 2
 
 

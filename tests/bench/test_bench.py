@@ -177,8 +177,8 @@ def test_measures_as_many_frames_on_the_device_asked_for(
     assert json.loads((tmp_path / "figures.json").read_text())
 
 
-def test_measures_a_setting_without_a_file() -> None:
-    ran = process("bench", "--preset", "tiny", "--frames", "1", "--size", "32")
+def test_measures_a_setting_without_a_file(command: Commands) -> None:
+    ran = command("bench", "--preset", "tiny", "--frames", "1", "--size", "32")
     assert "random numbers, 192 texels" in ran.out
 
 
@@ -196,10 +196,10 @@ def test_measures_a_setting_without_a_file() -> None:
         (("--preset", "tiny", "--model", "quest3", "--counts"), "--counts and --model are given"),
     ],
 )
-def test_refuses_in_one_sentence(arguments: tuple[str, ...], sentence: str) -> None:
-    assert sentence in process("bench", *arguments).sentence
+def test_refuses_in_one_sentence(command: Commands, arguments: tuple[str, ...], sentence: str) -> None:
+    assert sentence in command("bench", *arguments).sentence
 
 
-def test_refuses_an_avatar_without_clips(tmp_path: Path) -> None:
+def test_refuses_an_avatar_without_clips(command: Commands, tmp_path: Path) -> None:
     write(tmp_path / "still.muaavatar", replace(synthetic_avatar(), clips=()))
-    assert "holds no clips" in process("bench", tmp_path / "still.muaavatar", "--frames", "1").sentence
+    assert "holds no clips" in command("bench", tmp_path / "still.muaavatar", "--frames", "1").sentence

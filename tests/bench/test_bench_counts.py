@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from commands import process
+from commands import Commands
 from synthetic_avatar import synthetic_avatar, with_expressions
 
 from mua.asset import write
@@ -36,9 +36,9 @@ def test_network_part_costs_what_the_asset_counts(device: Device, avatar_file: P
     assert spent["InverseDwt"].flops == sum(synthesis(*levels, taps=10) for levels in detailed)
 
 
-def test_counts_what_a_frame_must_do(avatar_file: Path, tmp_path: Path) -> None:
+def test_counts_what_a_frame_must_do(avatar_file: Path, tmp_path: Path, command: Commands) -> None:
     output = tmp_path / "counts.json"
-    ran = process("bench", avatar_file, "--counts", "--json", output)
+    ran = command("bench", avatar_file, "--counts", "--json", output)
     report = json.loads(output.read_text())
     assert all(name in ran.out for name in (*report["kernels"], "peak frame", "part 2", "2.2"))
     assert report["dispatches"] == {"decode": 30, "pose": 8, "rest": 7}
@@ -79,15 +79,17 @@ def test_fragments_are_the_pixels_of_all_quads(device: Device, avatar_file: Path
     assert found == pytest.approx(4 * lengths.prod(axis=1).sum(), rel=0.02)  # all of them inside the image
 
 
-def test_a_face_counts_beside_a_decode_that_stays_as_it_is(avatar_file: Path, tmp_path: Path) -> None:
+def test_a_face_counts_beside_a_decode_that_stays_as_it_is(
+    avatar_file: Path, tmp_path: Path, command: Commands
+) -> None:
     path, output = tmp_path / "face.muaavatar", tmp_path / "counts.json"
     write(path, with_expressions(synthetic_avatar()))
-    ran = process("bench", path, "--counts", "--json", output)
+    ran = command("bench", path, "--counts", "--json", output)
     assert ran.status == 0, ran.err
     face = json.loads(output.read_text())
     assert face["face"]["bytes"] > 0
     assert f"+{face['face']['flops'] / face['operations']['decode']:.1%}" in ran.out
-    process("bench", avatar_file, "--counts", "--json", output)
+    command("bench", avatar_file, "--counts", "--json", output)
     plain = json.loads(output.read_text())
     assert plain["face"] is None
     assert (plain["bytes"], plain["parts"]) == (face["bytes"], face["parts"])

@@ -22,8 +22,6 @@ from mua.teachers.trained.teacher import TrainedTeacher
 from mua.teachers.trained.template_training import TemplateSettings
 from mua.training.schedule import Schedule
 
-pytestmark = pytest.mark.usefixtures("kept_atlases")
-
 
 def film_set(folder: Path, capture: Capture) -> None:
     """Draw the images and masks of an AvatarReX set: its template in the poses of the capture that it becomes."""

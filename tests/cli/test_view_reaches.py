@@ -44,7 +44,7 @@ class Opened:
 
 @pytest.fixture
 def opened(
-    command: Commands, avatar_files: tuple[Path, ...], monkeypatch: pytest.MonkeyPatch
+    command: Commands, avatar_files: tuple[Path, ...], device: mua.gpu.Device, monkeypatch: pytest.MonkeyPatch
 ) -> Iterator[Callable[..., Opened]]:
     """Runs the command line with a canvas in place of the screen."""
     canvases: list[RenderCanvas] = []
@@ -78,11 +78,9 @@ def opened(
         assert ended.status == 0, ended.err
         return Opened(**found)
 
-    device = mua.gpu.open_device(None)
     yield run
     for canvas in canvases:
         canvas.close()
-    device.close()
 
 
 @pytest.fixture

@@ -34,8 +34,6 @@ from mua.teachers.procedural import procedural_character
 from mua.teachers.simulated.still import StillTeacher
 from mua.teachers.trained.settings import PRESETS
 
-pytestmark = pytest.mark.usefixtures("kept_atlases")
-
 MADE_SO = 45.0  # dB, of 8 bits and of the rasteriser's own limits, beside what drew the images
 
 

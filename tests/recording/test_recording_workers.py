@@ -169,7 +169,7 @@ def test_a_damaged_recording_is_reported_and_recorded_again(alone: Path, tmp_pat
         record_share(teacher, plan(teacher.rig), directory, rank=0, count=1, rate=RATE)
     (damaged / "shards/00000/whole_00000.npy").unlink()
     notes: list[str] = []
-    run(directory, FormulaTeacher, note=notes.append)
+    run(directory, FormulaTeacher, jobs=1, note=notes.append)
     (sentence,) = notes
     assert sentence.startswith(f"{damaged / 'shards/00000/whole_00000.npy'} is missing")
     assert sentence.endswith(". It is recorded again.")

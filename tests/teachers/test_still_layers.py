@@ -14,6 +14,8 @@ from mua.avatar.decode import pose_splats
 from mua.avatar.rendering import render_premultiplied
 from mua.teachers.simulated.still import StillTeacher
 
+pytestmark = pytest.mark.usefixtures("first_try")
+
 RED, GREEN, BLUE = np.eye(3)
 SIDE, APART = 0.3, 0.005  # metres; splats are as wide as the layers are apart
 HALF = 128

@@ -34,8 +34,6 @@ from mua.teachers.trained.template_training import TemplateSettings
 from mua.teachers.trained.windows import windows
 from mua.training.schedule import Schedule
 
-pytestmark = pytest.mark.usefixtures("kept_atlases")
-
 CORNERS = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
 TRIANGLES = [(0, 2, 1), (0, 1, 3), (1, 2, 3)]
 

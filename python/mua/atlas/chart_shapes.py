@@ -61,9 +61,11 @@ def rasterised(
     turn = _rotation(angle)
     moved = turn @ points
     shift = GUTTER - moved.min(axis=1)
-    column, row = (moved + shift[:, None]).astype(np.int64)
-    solid = np.zeros((row.max() + 1 + GUTTER, column.max() + 1 + GUTTER), bool)
-    solid[row, column] = True
+    column, row = (moved + shift[:, None]).astype(np.int32)
+    height, width = row.max() + 1 + GUTTER, column.max() + 1 + GUTTER
+    cells = np.zeros(height * width, bool)
+    cells[row * width + column] = True
+    solid = cells.reshape(height, width)
     return Shape(angle, turn, shift, solid, grown(solid, GUTTER))
 
 
@@ -131,7 +133,8 @@ def points_on(
         found.append(np.stack([corners[rows, :, axis] @ grid for axis in range(2)]).reshape(2, -1))
         owners.append(np.repeat(charts[rows], len(x)))
     points, owner = np.concatenate(found, axis=1), np.concatenate(owners)
-    return np.split(points[:, np.argsort(owner, kind="stable")], np.cumsum(np.bincount(owner))[:-1], axis=1)
+    order, ends = np.argsort(owner, kind="stable"), np.cumsum(np.bincount(owner))[:-1]
+    return np.split(points.take(order, axis=1), ends, axis=1)  # by rows in memory, unlike points[:, order]
 
 
 def _steps(wanted: Array) -> Array:

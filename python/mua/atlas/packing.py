@@ -4,8 +4,9 @@ Charts are laid down from large to small. Of all places where a chart fits and a
 most of its outline lies near what is taken. The smallest, which count as their boxes, fill what is left row by row.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
@@ -20,6 +21,9 @@ CHARTS_TRIED = 250  # in all tries together
 LARGE = 0.004  # share of the cells from which on a chart is also tried turned by half a right angle
 CRUMB = 8  # cells along the longer side of a chart with its gutters that is taken for its box
 SMALLER = 0.95  # each time that something fits nowhere
+SLANT = np.pi / 4  # half a right angle
+
+Shapes = Callable[[int, float, float], Shape]  # a chart at a scale, turned by so much more than upright
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,8 +44,17 @@ def pack(
     surface = areas(corners).sum()
     scaled = corners * (GRID * np.sqrt(FULL / max(surface, np.finfo(float).tiny)))
     points, angles = points_on(scaled, charts), narrowest_angles(corners, charts)
-    tries, half = TRIES[: max(CHARTS_TRIED // len(points), 1)], _half_gutters(points, angles)
-    layouts = [_laid(points, angles, by_box=by_box, full=full * FULL, half=half) for by_box, full in tries]
+
+    @cache  # several tries ask for the same
+    def shape(chart: int, scale: float, slant: float) -> Shape:
+        return rasterised(scale * points[chart], angles[chart] + slant)
+
+    tries, half = TRIES[: max(CHARTS_TRIED // len(points), 1)], _half_gutters(shape, len(points))
+    longest = max(np.ptp(p, axis=1).max() for p in points)
+    layouts = []
+    for by_box, full in tries:
+        scale = min(_fitting(full * FULL, half), float(GRID / longest))
+        layouts.append(_laid(shape, len(points), by_box=by_box, scale=scale))
     best = max(layouts, key=lambda layout: layout.scale / layout.side)
     placed = best.scale * np.einsum("fij,fkj->fki", best.turns[charts], scaled) + best.shifts[charts][:, None]
     placed -= placed.min(axis=(0, 1))
@@ -49,41 +62,38 @@ def pack(
 
 
 def _laid(
-    points: Sequence[Array],  # of each chart [2, n], cells
-    angles: Array,  # [K]
+    shape: Shapes,
+    count: int,  # of charts
     *,
     by_box: bool,  # the order is that of their boxes, not of their cells
-    full: float,
-    half: float,  # from `_half_gutters`
+    scale: float,
 ) -> _Layout:
-    """Lay down all charts, smaller than they are until they take `full` of the square, or less where they must."""
-    scale = _fitting(points, full, half)
+    """Lay down all charts in this scale, or in a smaller one where they must."""
     while True:
-        shapes = [rasterised(scale * p, angle) for p, angle in zip(points, angles, strict=True)]
-        layout = _attempt(shapes, [scale * p for p in points], scale=scale, by_box=by_box)
+        layout = _attempt(shape, count, scale=scale, by_box=by_box)
         if layout:
             return layout
         scale *= SMALLER
 
 
-def _half_gutters(points: Sequence[Array], angles: Array) -> float:
+def _half_gutters(shape: Shapes, count: int) -> float:
     """Half of what the gutters take beside the charts at a scale of 1."""
     surface = FULL * GRID**2
-    gutters = sum(rasterised(p, angle).cells for p, angle in zip(points, angles, strict=True)) - surface
+    gutters = sum(shape(chart, 1.0, 0.0).cells for chart in range(count)) - surface
     return float(gutters / (2 * surface))
 
 
-def _fitting(points: Sequence[Array], full: float, half: float) -> float:
+def _fitting(full: float, half: float) -> float:
     """The scale at which charts and half of their gutters have as many cells as `full` of the square."""
-    scale = np.sqrt(full / FULL + half**2) - half  # gutters grow with length, charts with area: a quadratic equation
-    return float(min(scale, GRID / max(np.ptp(p, axis=1).max() for p in points)))
+    return float(np.sqrt(full / FULL + half**2) - half)  # gutters grow with length, charts with area: quadratic
 
 
-def _attempt(shapes: Sequence[Shape], points: Sequence[Array], *, scale: float, by_box: bool) -> _Layout | None:
+def _attempt(shape: Shapes, count: int, *, scale: float, by_box: bool) -> _Layout | None:
     """A layout in this scale, None where something fits nowhere."""
-    cells = np.array([shape.cells for shape in shapes])
-    order = np.argsort([-shape.mask.size for shape in shapes] if by_box else -cells, kind="stable").tolist()
-    grid = PackingGrid(int(np.sqrt(2) * max(max(shape.mask.shape) for shape in shapes)) + 1, len(shapes))
+    shapes = [shape(chart, scale, 0.0) for chart in range(count)]
+    cells = np.array([one.cells for one in shapes])
+    order = np.argsort([-one.mask.size for one in shapes] if by_box else -cells, kind="stable").tolist()
+    grid = PackingGrid(int(np.sqrt(2) * max(max(one.mask.shape) for one in shapes)) + 1, len(shapes))
     turns, shifts = np.empty((len(shapes), 2, 2)), np.empty((len(shapes), 2))
     crumbs: dict[tuple[int, ...], list[int]] = {}
     for chart in order:
@@ -92,7 +102,7 @@ def _attempt(shapes: Sequence[Shape], points: Sequence[Array], *, scale: float, 
             crumbs.setdefault(tuple(sorted(choice[0].mask.shape)), []).append(chart)
             continue
         if cells[chart] > LARGE * GRID**2:
-            choice += ways(rasterised(points[chart], shapes[chart].angle + np.pi / 4))
+            choice += ways(shape(chart, scale, SLANT))
         place = grid.best(choice)
         if place is None:
             return None

@@ -44,8 +44,10 @@ def fine_silhouette(vertices: Array, faces: Array, camera: CaptureCamera) -> Arr
     seen = ((corners.max(axis=1) > 0) & (corners.min(axis=1) < camera.size)).all(axis=1)
     picture = Image.new("1", (FINER * width, FINER * height))
     draw = ImageDraw.Draw(picture)
-    for triangle in np.clip(corners[seen] * FINER, -1e5, 1e5).reshape(-1, 6).tolist():
-        draw.polygon(triangle, fill=1)
+    # One list of numbers: thousands of lists set off garbage collection.
+    flat = np.clip(corners[seen] * FINER, -1e5, 1e5).ravel().tolist()
+    for first in range(0, len(flat), 6):
+        draw.polygon(flat[first : first + 6], fill=1)
     return np.asarray(picture)
 
 
