@@ -34,6 +34,24 @@ def test_head_and_hands_are_firmer_than_the_trunk() -> None:
     assert np.all(np.diff(looseness.reshape(101, -1)[:, 0]) < 1e-3)
 
 
+def test_what_a_hand_holds_is_firm_and_what_hangs_from_the_head_is_not() -> None:
+    character = tube(rings=101)
+    hand, head = (
+        replace(
+            character.skeleton,
+            names=("LeftArm", holder, "Bone_042", "Spine", "RightArm", "RightLeg"),
+            parents=np.array([-1, 0, 1, 0, 0, 0], np.int32),
+            bind_rotations=np.tile([1.0, 0, 0, 0], (6, 1)),
+            bind_translations=np.zeros((6, 3)),
+        )
+        for holder in ("LeftHand", "Head")
+    )
+    end = character.mesh.vertices[:, 1] > 1.7
+    held, hanging = (estimate_looseness(replace(character, skeleton=one))[end] for one in (hand, head))
+    np.testing.assert_allclose(held, FIRM_LOOSENESS, atol=0.01)
+    np.testing.assert_allclose(hanging, SOFT_LOOSENESS, atol=0.01)
+
+
 @pytest.mark.parametrize("side", [1, -1])
 @pytest.mark.parametrize("size", [1.0, 0.05, 20.0])
 def test_small_separate_pieces_are_rigid(side: int, size: float) -> None:

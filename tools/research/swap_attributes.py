@@ -1,6 +1,6 @@
 """Print what each attribute costs in unseen motion: a student's images with that attribute of its teacher.
 
-python tools/research/swap_attributes.py hero.glb hero.muaavatar --motion kicks/*.bvh
+python tools/research/swap_attributes.py hero.glb hero.muaavatar --fit hero.work/fit-*.npy --motion kicks/*.bvh
 
 Two frames of each motion, of head, hand, the height with most open borders and the whole figure, from the front and
 from behind. The teacher is the simulated one, with its light and its moving cloth, and all images are compared with its
@@ -93,13 +93,15 @@ def main() -> None:
     parser.add_argument("character", type=Path)
     parser.add_argument("avatars", type=Path, nargs="+", help="baked from the character")
     parser.add_argument("--motion", type=Path, nargs="+", required=True)
+    parser.add_argument("--fit", type=Path, help="corrections that the bakes kept in their work directory, fit-*.npy")
     parser.add_argument("--each", action="store_true", help="also exchange every attribute by itself")
     parser.add_argument("--size", type=int, default=540, help="pixels along a side of an image")
     parser.add_argument("--cache", type=Path, default=Path("build/unseen"), help="keeps the teacher's frames")
     parser.add_argument("-o", "--output", type=Path, help="a directory for images: teacher beside students")
     given = parser.parse_args()
     avatars = {str(path): read(path) for path in given.avatars}
-    teacher = Teacher(given.character, given.cache, texels=next(iter(avatars.values())).rig.texels.size)
+    texels = next(iter(avatars.values())).rig.texels.size
+    teacher = Teacher(given.character, given.cache, texels=texels, fit=given.fit)
     found: dict[str, dict[str, list[Figures]]] = {}
     motions = list(motions_of(teacher.character, given.motion))
     for number, (frame, part, figures, images) in enumerate(
