@@ -24,7 +24,7 @@ from mua.texture.surfels import SurfaceFrames
 class StillTeacher:
     """Splats of a character that skinning alone moves, in the colours of its textures.
 
-    `rig` is what they stand on, `laid` where and how they lie on it; the latter pickles, for teachers of other processes.
+    `rig` is what they stand on, `laid` where and how they lie on it; that pickles, for teachers of other processes.
     """
 
     def __init__(
