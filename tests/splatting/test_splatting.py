@@ -1,6 +1,7 @@
 """The differentiable rasteriser: its image against the reference renderer, its gradients against differences."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import fields, replace
 from itertools import pairwise
 from typing import Any
@@ -20,7 +21,7 @@ from mua.kernels.splat_project import half_extents as extents_of
 from mua.kernels.splat_sort import splat_sort
 from mua.splatting.projection import Eye, TorchSplats, half_extents, project
 from mua.splatting.rasterise import draw_quads, largest_shares, rasterise, rasterise_views
-from mua.splatting.tiles import TILE, assign
+from mua.splatting.tiles import TILE, assign, split
 
 STEP = 1e-8  # the step of the finite differences; a larger one reaches over the edges of windows
 DIFFERENTIATED = [field.name for field in fields(TorchSplats) if field.name != "normals"]
@@ -266,6 +267,41 @@ def test_tiles_hold_every_quad_whose_pixels_they_have_front_to_back(screen: tupl
     assert len(found) == len(set(found))
     assert expected <= set(found)
     assert all((np.diff(held[low:high]) > 0).all() for low, high in pairwise(starts))
+
+
+@pytest.mark.parametrize("count", [1, 4, 200])
+def test_parts_hold_each_tile_once_and_about_as_many_pairs(count: int) -> None:
+    rng = np.random.default_rng(3)
+    middle, extent = rng.uniform(-10, 120, (300, 2)), rng.uniform(0.1, 20, (300, 2))
+    tiles = assign(torch.tensor(middle), torch.tensor(extent), (90, 100))
+    parts = split(tiles, count)
+    assert torch.equal(torch.cat([part.places for part in parts]), tiles.places)
+    assert torch.equal(torch.cat([part.starts[:-1] for part in parts]), tiles.starts[:-1])
+    assert parts[-1].starts[-1] == tiles.starts[-1]
+    largest = int(tiles.starts.diff().max())
+    assert all(int(part.starts[-1] - part.starts[0]) <= len(tiles.quads) / count + 2 * largest for part in parts)
+
+
+def test_images_and_gradients_do_not_depend_on_the_number_of_threads() -> None:
+    found = []
+    for threads in (1, 3):
+        tensors, eyes, bounds = views()
+        with torch_threads(threads):
+            image = rasterise(tensors, eyes[0], bounds)
+            image.square().sum().backward()
+        found.append((image.detach(), *(getattr(tensors, name).grad for name in DIFFERENTIATED)))
+    assert all(torch.equal(one, other) for one, other in zip(*found, strict=True))
+
+
+@contextmanager
+def torch_threads(count: int) -> Iterator[None]:
+    """Let torch compute with that many threads."""
+    before = torch.get_num_threads()
+    torch.set_num_threads(count)
+    try:
+        yield
+    finally:
+        torch.set_num_threads(before)
 
 
 def test_quads_are_drawn_as_far_as_the_reference_reaches() -> None:

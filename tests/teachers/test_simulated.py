@@ -1,5 +1,6 @@
 """The simulated teacher: frames that keep the contract between canonical mesh, offsets and the texels' transforms."""
 
+import pickle
 from dataclasses import replace
 
 import numpy as np
@@ -20,6 +21,7 @@ from mua.rig.character import Character
 from mua.rig.expressions import Expressions
 from mua.rig.rig import Rig
 from mua.teacher import TeacherFrame
+from mua.teachers.simulated import still as still_teacher
 from mua.teachers.simulated.chords import SEEN
 from mua.teachers.simulated.folds import Folds
 from mua.teachers.simulated.simulation import Simulation
@@ -74,6 +76,17 @@ def test_frames_not_wanted_are_poses_and_change_nothing(teacher: SimulatedTeache
     assert isinstance(some[11], TeacherFrame)
     np.testing.assert_array_equal(some[11].texture, every[11].texture)
     np.testing.assert_array_equal(some[11].mesh, every[11].mesh)
+
+
+def test_splats_laid_by_another_process_are_not_laid_again(
+    teacher: SimulatedTeacher, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    sent = pickle.dumps(teacher.laid)
+    monkeypatch.setattr(still_teacher, "SurfaceTexels", None)
+    other = SimulatedTeacher(tube(looseness=0.6), texels=SIZE, laid=pickle.loads(sent))
+    clip = swing(tube()).cut(slice(3))
+    for own, theirs in zip(whole_frames(other, clip), whole_frames(teacher, clip), strict=True):
+        np.testing.assert_array_equal(own.texture, theirs.texture)
 
 
 def test_a_frame_of_the_range_of_motion_follows_from_its_pose_alone(teacher: SimulatedTeacher) -> None:

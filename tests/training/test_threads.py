@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from mua.training.threads import in_order, together
+from mua.training.threads import in_order, together, while_next
 
 
 def test_results_come_in_the_order_of_the_items() -> None:
@@ -34,6 +34,40 @@ def test_no_more_items_are_taken_than_threads_are_busy() -> None:
 def test_items_are_worked_on_at_once() -> None:
     meet = threading.Barrier(2, timeout=60)
     assert list(in_order(lambda _: meet.wait() >= 0, range(2), threads=2)) == [True, True]
+
+
+def test_the_next_item_is_made_while_one_is_worked_on() -> None:
+    begun, made = threading.Event(), threading.Event()
+
+    def items() -> Iterator[int]:
+        yield 1
+        assert begun.wait(60)
+        made.set()
+        yield 2
+
+    def work(item: int) -> int:
+        begun.set()
+        assert made.wait(60)
+        return item * item
+
+    assert list(while_next(work, items())) == [1, 4]
+    assert list(while_next(work, [])) == []
+
+
+def test_an_error_in_the_other_thread_ends_what_makes_items() -> None:
+    made = []
+
+    def items() -> Iterator[int]:
+        for item in range(10):
+            made.append(item)
+            yield item
+
+    def fail(item: int) -> None:
+        raise ValueError(f"no room for {item}")
+
+    with pytest.raises(ValueError, match="no room for 0"):
+        list(while_next(fail, items()))
+    assert made == [0, 1]
 
 
 def test_the_first_error_ends_all_tasks() -> None:

@@ -14,6 +14,7 @@ from mua.arrays import Array
 from mua.asset import read, write
 from mua.gpu import Device
 from mua.pose.expression_names import match_expressions
+from mua.pose.signed_expressions import as_weights
 
 SETTLED = 8  # displayed frames, as in programs/ComponentFace.cs
 SORTING = len(FRAME_ORDER) - FRAME_ORDER.index("SplatProject")
@@ -130,6 +131,19 @@ def test_a_trackers_names_move_what_the_avatar_has(story: Story, folder: Path) -
     shapes = {"jawOpen": 0.9, "mouthClose": 0.7, "cheekPuff": 0.5, "eyeBlinkLeft": 0.3, "Smoking": 0.1}
     assert numbers(reported["tracked"][0]) == weights(shapes, clip)
     assert (reported["said"], reported["log"]) == ([""], [])
+
+
+def test_coefficients_of_smplx_move_one_of_each_pair(story: Story, folder: Path) -> None:
+    """By as much as `as_weights` says of a mesh's animation."""
+    avatar, names = with_expressions(synthetic_avatar(1)), ("Exp000+", "Exp000-", "Exp001+", "Exp001-")
+    assert avatar.rig.expressions
+    named = replace(avatar.rig, expressions=replace(avatar.rig.expressions, names=names))
+    write(folder / "smplx.muaavatar", replace(avatar, rig=named), storage="f16")
+    coefficients = np.array([2.0, -4, 6, 0])
+    expected = as_weights("Exp000", coefficients) | as_weights("Exp001", -coefficients / 2)
+    followed = np.array([numbers(line) for line in story("FollowsCoefficients", "smplx")["followed"]])
+    np.testing.assert_allclose(followed, np.stack([expected[name] for name in names], axis=1), rtol=1e-6)
+    assert followed.any(axis=0).all()
 
 
 def test_a_face_or_an_avatar_that_goes_before_the_avatar_is_ready(story: Story, face: Path) -> None:

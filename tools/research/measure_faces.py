@@ -302,9 +302,8 @@ def load_teacher(given: argparse.Namespace, rig: Rig) -> FacedTeacher:
             f"version with --detail {' '.join(given.detail) or 'left out'}"
         )
     fit = given.recording.with_name(f"{given.recording.name.replace('recording', 'fit')}.npy")
-    corrections = np.load(fit) if fit.exists() else None
-    bare = replace(character, clips=(), source=None)
-    return FacedTeacher(bare, texels=rig.texels.size, corrections=corrections)
+    teacher = FacedTeacher(replace(character, clips=(), source=None), texels=rig.texels.size)
+    return teacher.corrected(np.load(fit)) if fit.exists() else teacher
 
 
 def main() -> None:

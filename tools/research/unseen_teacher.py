@@ -135,9 +135,9 @@ class Teacher:
     def _keep(self, path: Path, motion: Motion) -> None:
         if self._simulated is None:
             bare = replace(self.character, clips=(), source=None)
-            self._simulated = SimulatedTeacher(
-                bare, texels=self._texels, corrections=self._corrections, seed=self._seed
-            )
+            self._simulated = SimulatedTeacher(bare, texels=self._texels, seed=self._seed)
+            if self._corrections is not None:
+                self._simulated = self._simulated.corrected(self._corrections)
         shown = self._simulated.frames(motion.clip, frozenset(motion.frames.tolist()))
         whole = [frame for frame in shown if isinstance(frame, TeacherFrame)]
         path.parent.mkdir(parents=True, exist_ok=True)

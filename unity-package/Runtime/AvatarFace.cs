@@ -1,4 +1,5 @@
 using System.Collections.Generic;
+using Mua.Motion;
 using UnityEngine;
 
 namespace Mua
@@ -14,7 +15,8 @@ namespace Mua
         private readonly AvatarExpressions expressions;
         private readonly SkinnedMeshRenderer mesh;
         private readonly List<int> shapes = new List<int>(); // [S] that may move expressions
-        private readonly float[] weights; // of those
+        private readonly List<float> wholes = new List<float>(); // [S] weights of those at which an expression is whole
+        private readonly float[] weights; // [S] of expressions
         private readonly ExpressionMapping mapping;
         private readonly bool moves;
 
@@ -26,11 +28,15 @@ namespace Mua
             var names = new List<string>();
             for (int shape = 0; shape < (shared == null ? 0 : shared.blendShapeCount); shape++)
             {
-                string name = OwnName(shared.GetBlendShapeName(shape));
-                if (!names.Contains(name)) // the first of a name stays
+                foreach (KeyValuePair<string, float> way in ExpressionNames.OfShape(shared.GetBlendShapeName(shape)))
                 {
-                    names.Add(name);
-                    shapes.Add(shape);
+                    string name = OwnName(way.Key);
+                    if (!names.Contains(name)) // the first of a name stays
+                    {
+                        names.Add(name);
+                        shapes.Add(shape);
+                        wholes.Add(Whole * way.Value);
+                    }
                 }
             }
             weights = new float[names.Count];
@@ -58,7 +64,7 @@ namespace Mua
             for (int i = 0; i < weights.Length; i++)
             {
                 float weight = mesh.GetBlendShapeWeight(shapes[i]);
-                weights[i] = float.IsNaN(weight) ? 0 : weight / Whole;
+                weights[i] = float.IsNaN(weight) ? 0 : weight / wholes[i];
             }
             mapping.Apply(weights);
         }

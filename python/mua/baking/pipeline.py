@@ -33,6 +33,7 @@ from mua.rig.template import make_template
 from mua.rig.texel_binding import bind_texels
 from mua.teachers.simulated.still import StillTeacher
 from mua.teachers.simulated.teacher import SimulatedTeacher
+from mua.teachers.simulated.texels import SurfaceTexels
 from mua.training.memory import release_memory
 
 # Steps of the fit, and training frames for each further one: less than a tenth of the time of a bake.
@@ -75,11 +76,11 @@ def _bake(settings: BakeSettings, device: torch.device, listener: Listener) -> B
     require_writable(settings.output)
     still = cache(partial(StillTeacher, character, texels=settings.student.texels))
     corrections = _fitted(settings, character, still, planned, listener)
-    fidelity = _fidelity(settings, character, clips, still, corrections, listener)
+    laid, fidelity = _compared(settings, character, clips, still, corrections, listener)
     del still
     character = replace(character, source=None)  # its textures may be large
     release_memory()
-    recording = _record(settings, character, corrections, planned, listener)
+    recording = _record(settings, character, laid, planned, listener, fitted=corrections is not None)
     release_memory()
     distillation = Distillation(
         output=settings.output,
@@ -129,31 +130,36 @@ def _fitted(
     return corrections
 
 
-def _fidelity(
+def _compared(
     settings: BakeSettings,
     character: Character,
     clips: list[Clip],
     still: Callable[[], StillTeacher],
     corrections: Array | None,
     listener: Listener,
-) -> Fidelity | None:
-    """Compare splats and source and note the result; None if there is no source or no OpenGL."""
+) -> tuple[SurfaceTexels | None, Fidelity | None]:
+    """The splats as they are fitted, and the comparison with the source, which is noted.
+
+    None without a source; no comparison without OpenGL.
+    """
     if character.source is None:
-        return None
+        return None, None
     listener.stage("comparison with source")
     teacher = still() if corrections is None else still().corrected(corrections)
     fidelity, warnings = fidelity_of(character, clips, texels=settings.student.texels, teacher=teacher)
     for sentence in (*([] if fidelity is None else [report.summary(fidelity)]), *warnings):
         listener.note(sentence)
-    return fidelity
+    return teacher.laid, fidelity
 
 
 def _record(
     settings: BakeSettings,
     character: Character,
-    corrections: Array | None,
+    laid: SurfaceTexels | None,  # None: each process that records lays them
     planned: list[PlannedClip],
     listener: Listener,
+    *,
+    fitted: bool,
 ) -> Recording:
     """The stand-in teacher's recording."""
     texels, seed = settings.student.texels, settings.student.seed
@@ -161,9 +167,8 @@ def _record(
         listener.note(sentence)
     bare = replace(character, clips=())
     lit_in = usual_poses(planned)
-    teacher = partial(SimulatedTeacher, bare, texels=texels, corrections=corrections, lit_in=lit_in, seed=seed)
-    fitted = [] if corrections is None else [FITTED]
-    key = recording_key([*parts(settings, character), *fitted], planned)
+    teacher = partial(SimulatedTeacher, bare, texels=texels, laid=laid, lit_in=lit_in, seed=seed)
+    key = recording_key([*parts(settings, character), *([FITTED] if fitted else [])], planned)
     return recorded(teacher, key, settings, planned, listener)
 
 

@@ -26,6 +26,7 @@ from mua.splatting.posing import TorchRig, blend_texels, blend_vertices, place_s
 from mua.splatting.projection import Eye, TorchSplats
 from mua.splatting.rasterise import rasterise
 from mua.teachers.simulated.still import StillTeacher
+from mua.training.threads import while_next
 
 STEPS = 200  # each of one image
 POSES = 6  # beside that of the file
@@ -52,6 +53,16 @@ class _Shown:
     texture: Tensor  # [N, 23]
     bounds: Tensor  # [2, 3]
     centres: Array  # [N, 3]
+
+
+@dataclass(frozen=True, eq=False)
+class _View:
+    """What a step descends on."""
+
+    shown: _Shown
+    camera: Camera
+    source: Tensor  # [H, W, 4] premultiplied sRGB and alpha
+    background: Tensor  # [3]
 
 
 def fit(
@@ -94,18 +105,26 @@ def _descend(
     )
     schedule = torch.optim.lr_scheduler.ExponentialLR(optimiser, LAST_RATE ** (1 / max(steps, 1)))
     widths = poses[0].texture[:, 7:9].mean(dim=1, keepdim=True).exp()
-    for step in range(steps):
-        shown = poses[step % len(poses)]
-        camera, background = _camera(shown, widths, side=side, rng=rng), torch.tensor(rng.uniform(size=3)).float()
-        source = torch.tensor(paint(shown.drawn, camera))
-        target = source[..., :3] + (1 - source[..., 3:]) * background
+
+    def views() -> Iterator[_View]:
+        for step in range(steps):
+            shown = poses[step % len(poses)]
+            camera, background = _camera(shown, widths, side=side, rng=rng), rng.uniform(size=3)
+            source = paint(shown.drawn, camera)
+            yield _View(shown, camera, torch.tensor(source), torch.tensor(background).float())
+
+    def descend(view: _View) -> None:
+        shown, camera, background = view.shown, view.camera, view.background
+        target = view.source[..., :3] + (1 - view.source[..., 3:]) * background
         splats = _splats(shown, _by(changes, widths), in_view(shown.centres, camera))
         image = rasterise(splats, Eye.of(camera, shown.texture), shown.bounds, background)
         optimiser.zero_grad()
         ((image - target).square().sum() + PRIOR * changes["colour"].square().sum()).backward()
         optimiser.step()
         schedule.step()
-        progress(step + 1)
+
+    for done, _ in enumerate(while_next(descend, views()), start=1):
+        progress(done)
     with torch.no_grad():
         return np.asarray(_by(changes, widths).numpy())
 

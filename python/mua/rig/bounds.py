@@ -4,11 +4,10 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from mua import rotation
 from mua.arrays import Array
-from mua.kernels.dq_skinning import blend_vertices
 from mua.pose.clip import Clip
 from mua.rig.rig import Rig
+from mua.rig.skinning import Skinning, transform
 from mua.rig.stretched import stretched
 
 MARGIN = 0.06  # share of the figure's size by which cloth may leave the skinned template
@@ -22,13 +21,13 @@ def playback_bounds(rig: Rig, clips: Iterable[Clip]) -> Array:
 
 def frame_boxes(rig: Rig, clip: Clip) -> Array:
     """Lowest and highest corner [F, 2, 3] of every frame of a clip in the world, metres."""
-    boxes, around = [], margin(rig)
+    boxes, around, skinning = [], margin(rig), Skinning(rig.skin_indices, rig.skin_weights)
     for frame, joints in enumerate(rig.skeleton.skinning(clip.rotations, clip.translations)):
-        dual = blend_vertices(joints, rig.skin_indices, rig.skin_weights)
+        dual = skinning(joints)
         shape = rig.mesh.vertices
         if clip.stretches is not None:
             shape = stretched(rig, clip.stretches, frame, shape)
-        posed = rotation.dual_transform(dual, shape)
+        posed = transform(dual, shape)
         boxes.append([posed.min(axis=0) - around, posed.max(axis=0) + around])
     return np.array(boxes)
 

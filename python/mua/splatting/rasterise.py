@@ -4,16 +4,20 @@
 # (Warp's functions have no types)
 
 import threading
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import nullcontext
-from typing import Any
+from typing import Any, TypeVar
 
 import torch
 import warp as wp
 
 from mua.splatting.kernels import passes
 from mua.splatting.projection import Eye, TorchSplats, colors_seen, half_extents, project
-from mua.splatting.tiles import TILE, Tiles, assign, join
+from mua.splatting.tiles import TILE, Tiles, assign, join, split
+from mua.training.threads import in_order
+
+PARTS = 4  # of an image's tiles on the CPU, at most as many at once
+T = TypeVar("T")
 
 # Warp compiles and loads a kernel when it is first launched, which two threads must not do at once.
 _FIRST = threading.Lock()
@@ -86,7 +90,7 @@ class _Draw(torch.autograd.Function):
         image, left = shapes.new_empty(tiles.pixels, 4), shapes.new_empty(tiles.pixels)
         ends = torch.empty(tiles.pixels, dtype=torch.int32, device=shapes.device)
         kernels = passes(REALS[shapes.dtype])
-        _launch(kernels.forward, tiles, [shapes, colors, image, left, ends])
+        _by_parts(tiles, lambda part: _launch(kernels.forward, part, [shapes, colors, image, left, ends]))
         context.save_for_backward(shapes, colors, left, ends)
         context.tiles = tiles
         return image
@@ -94,11 +98,25 @@ class _Draw(torch.autograd.Function):
     @staticmethod
     def backward(context: Any, *gradients: torch.Tensor) -> tuple[torch.Tensor | None, ...]:
         shapes, colors, left, ends = context.saved_tensors
-        by_shapes, by_colors = torch.zeros_like(shapes), torch.zeros_like(colors)
-        kernels = passes(REALS[shapes.dtype])
-        tensors = [shapes, colors, left, ends, gradients[0].contiguous(), by_shapes, by_colors]
-        _launch(kernels.backward, context.tiles, tensors)
+        kernels, gradient = passes(REALS[shapes.dtype]), gradients[0].contiguous()
+
+        def added(part: Tiles) -> tuple[torch.Tensor, torch.Tensor]:
+            by_shapes, by_colors = torch.zeros_like(shapes), torch.zeros_like(colors)
+            _launch(kernels.backward, part, [shapes, colors, left, ends, gradient, by_shapes, by_colors])
+            return by_shapes, by_colors
+
+        by_shapes, by_colors = map(sum, zip(*_by_parts(context.tiles, added), strict=True))
         return by_shapes, by_colors, None
+
+
+def _by_parts(tiles: Tiles, work: Callable[[Tiles], T]) -> list[T]:
+    """Results of all tiles, or of parts of them side by side: on the CPU Warp computes in the thread that calls it.
+
+    There are as many parts whatever the threads, so that results do not depend on them.
+    """
+    if tiles.quads.device.type != "cpu":
+        return [work(tiles)]
+    return list(in_order(work, split(tiles, PARTS), threads=min(torch.get_num_threads(), PARTS)))
 
 
 def _launch(kernel: Any, tiles: Tiles, tensors: list[torch.Tensor], *numbers: float) -> None:

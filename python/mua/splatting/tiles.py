@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import accumulate
+from itertools import accumulate, pairwise
 
 import torch
 
@@ -60,6 +60,21 @@ def join(
     pairs = sum(len(one.quads) for one in tiles)
     starts.append(tiles[0].starts.new_tensor([pairs]))
     return Tiles(torch.cat(places), torch.cat(starts), torch.cat(quads), sum(one.pixels for one in tiles))
+
+
+def split(
+    tiles: Tiles,
+    count: int,
+) -> list[Tiles]:
+    """The same tiles in parts of about as many pairs; quads and pixels are counted as in the whole."""
+    work = tiles.starts + torch.arange(len(tiles.starts), device=tiles.starts.device)  # an empty tile takes time too
+    wanted = torch.linspace(0, float(work[-1]), count + 1, device=work.device)
+    ends = torch.searchsorted(work, wanted.round().to(work.dtype)).tolist()
+    return [
+        Tiles(tiles.places[low:high], tiles.starts[low : high + 1], tiles.quads, tiles.pixels)
+        for low, high in pairwise(ends)
+        if high > low
+    ]
 
 
 def _places(screen: tuple[int, int], device: torch.device) -> torch.Tensor:

@@ -21,6 +21,18 @@ def in_order(work: Callable[[A], B], items: Iterable[A], *, threads: int) -> Ite
             yield result
 
 
+def while_next(work: Callable[[A], B], items: Iterable[A]) -> Iterator[B]:
+    """Results of `work` in the order of the items, in another thread while the next item is made in this one."""
+    with ThreadPoolExecutor(1) as pool:
+        at_work: Future[B] | None = None
+        for item in items:
+            if at_work is not None:
+                yield at_work.result()
+            at_work = pool.submit(work, item)
+        if at_work is not None:
+            yield at_work.result()
+
+
 def together(tasks: Sequence[Callable[[], None]], *, stop: Callable[[], None]) -> None:
     """Run all tasks at once, each in a thread of its own, and raise the first error of any.
 

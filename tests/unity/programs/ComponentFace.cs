@@ -92,6 +92,23 @@ namespace Mua
             Say("said", shown.Message);
         }
 
+        /// <summary>Shape keys of SMPL-X, whose coefficients have either sign, on an avatar that has a pair for each.</summary>
+        private static void FollowsCoefficients()
+        {
+            AvatarRenderer shown = Begin(files[0]);
+            Until(shown);
+            shown.IsPlaying = false;
+            SkinnedMeshRenderer face = MakeFace("head", "Exp001", "SMPLX-mesh.Exp000");
+            shown.Face = face;
+            foreach (float coefficient in new[] { 2f, -4f, 6f, 0f })
+            {
+                face.SetBlendShapeWeight(0, -100 * coefficient / 2);
+                face.SetBlendShapeWeight(1, 100 * coefficient);
+                Frames(2);
+                SayWeights("followed", shown);
+            }
+        }
+
         /// <summary>A tracker's names on an avatar that has VRM's: set by the application, then by a mesh.</summary>
         private static void TakesTrackersNames()
         {

@@ -11,8 +11,12 @@ namespace Mua.Motion
     /// </summary>
     public static class ExpressionNames
     {
+        private const float Deviations = 5; // of SMPL-X's training faces, at weight 1
+
         private static readonly Regex Word = new Regex(
             @"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+|[\p{L}\p{Nl}\p{No}\p{Cs}-[A-Za-z]]+", RegexOptions.CultureInvariant);
+
+        private static readonly Regex Coefficient = new Regex(@"^(?:.*\.)?(Exp[0-9]{3})\z", RegexOptions.CultureInvariant);
 
         private static readonly string[] Sides = { "left", "right" }, SideWords = { "Left", "Right" };
         private static readonly HashSet<string> Sided = InArkitOrPaired();
@@ -36,6 +40,22 @@ namespace Mua.Motion
                 }
             }
             return null;
+        }
+
+        /// <summary>
+        /// The expressions of a blend shape, each with the blend shape's value at weight 1: two for a coefficient of SMPL-X, which
+        /// has either sign. Reference: python/mua/pose/signed_expressions.py.
+        /// </summary>
+        public static KeyValuePair<string, float>[] OfShape(string name)
+        {
+            string coefficient = Coefficient.Match(name).Groups[1].Value; // empty where it is none
+            return coefficient.Length > 0
+                ? new[]
+                {
+                    new KeyValuePair<string, float>(coefficient + "+", Deviations),
+                    new KeyValuePair<string, float>(coefficient + "-", -Deviations),
+                }
+                : new[] { new KeyValuePair<string, float>(name, 1) };
         }
 
         /// <summary>

@@ -22,7 +22,10 @@ from mua.texture.surfels import SurfaceFrames
 
 
 class StillTeacher:
-    """Splats of a character that skinning alone moves, in the colours of its textures; `rig` is what they stand on."""
+    """Splats of a character that skinning alone moves, in the colours of its textures.
+
+    `rig` is what they stand on, `laid` where and how they lie on it; that pickles, for teachers of other processes.
+    """
 
     def __init__(
         self,
@@ -30,26 +33,24 @@ class StillTeacher:
         *,
         texels: int,
         template_vertices: int = 5000,
-        corrections: Array | None = None,  # [N, 9] beside offsets, log scales and albedo (mua.fidelity.fitting)
+        laid: SurfaceTexels | None = None,  # as `laid` of another teacher of the same character and sizes
     ) -> None:
-        """Prepare a texture of `texels` x `texels`."""
+        """Prepare a texture of `texels` x `texels`; seconds of work, fewer with splats that are `laid`."""
         mesh = character.mesh
         self.rig, self._template = build_rig(character, texels=texels, template_vertices=template_vertices)
         self._character = character
         self._skinned = SkinnedSurface(character)
         self._surface = SurfaceFrames(mesh.vertices, mesh.faces)
         self._smooth_turn = low_pass(mesh.vertices, mesh.faces, TURN_WAVELENGTH * figure_scale(mesh.vertices))
-        self._texels = SurfaceTexels(character, self.rig)
-        if corrections is not None:
-            self._texels = self._texels.corrected(corrections)
+        self.laid = SurfaceTexels(character, self.rig) if laid is None else laid
 
     def corrected(
         self,
-        by: Array,  # [N, 9], as `corrections` above
+        by: Array,  # [N, 9] beside offsets, log scales and albedo (mua.fidelity.fitting)
     ) -> Self:
         """The same teacher with corrections of its splats; this one stays as it is."""
         other = copy(self)
-        other._texels = self._texels.corrected(by)
+        other.laid = self.laid.corrected(by)
         return other
 
     def frame(
@@ -79,11 +80,11 @@ class StillTeacher:
             turn = _upside(rotation.multiply(turn, face_turn))
             strain = self._surface(moved)[1]
         light = self._light(joints, dual, moved, turn)
-        texture = self._texels.texture(canonical - bind, coarse, turn=turn, moved=moved, strain=strain, light=light)
+        texture = self.laid.texture(canonical - bind, coarse, turn=turn, moved=moved, strain=strain, light=light)
         if face is not None:
-            texture[:, :3] += self._texels.leaning(face_turn)
+            texture[:, :3] += self.laid.leaning(face_turn)
         mesh = (self.rig.mesh.vertices + coarse).astype(np.float32)
-        places = self._texels.places
+        places = self.laid.places
         straighten(texture, self.rig, joints=joints, mesh=mesh, moved=moved, canonical=canonical, places=places)
         return TeacherFrame(pose=pose, mesh=mesh, texture=texture)
 

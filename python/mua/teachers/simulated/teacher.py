@@ -27,6 +27,7 @@ from mua.teachers.simulated.simulated_surface import SimulatedSurface
 from mua.teachers.simulated.smoothing import low_pass
 from mua.teachers.simulated.still import StillTeacher
 from mua.teachers.simulated.surface import MovedSurface
+from mua.teachers.simulated.texels import SurfaceTexels
 from mua.texture.surfels import vertex_normals
 
 DARKEST = 3 / 255  # light on a vertex, below which no share of it is taken
@@ -42,12 +43,12 @@ class SimulatedTeacher(StillTeacher):
         *,
         texels: int,
         template_vertices: int = 5000,
-        corrections: Array | None = None,  # as StillTeacher takes them
+        laid: SurfaceTexels | None = None,  # as StillTeacher takes them
         lit_in: Sequence[Pose] = (),  # in which expressions change the light; none: in the bind pose
         seed: int = 0,
     ) -> None:
         """Prepare a texture of `texels` x `texels`; the seed chooses where the character's cloth folds."""
-        super().__init__(character, texels=texels, template_vertices=template_vertices, corrections=corrections)
+        super().__init__(character, texels=texels, template_vertices=template_vertices, laid=laid)
         mesh = character.mesh
         self._moving = SimulatedSurface(character, seed=seed)
         self._normals = vertex_normals(mesh.vertices, mesh.faces)
@@ -73,21 +74,23 @@ class SimulatedTeacher(StillTeacher):
         """The template's expressions with their gains: how each at 1 changes the light, by least squares over poses."""
         skeleton = self._character.skeleton
         surfaces = [self._skinned.posed(skeleton.skinning(pose.rotations, pose.translations)) for pose in poses]
-        rest = self._brightness(surfaces, np.zeros(len(expressions)))
+        rest = self._brightness(surfaces, np.zeros(len(expressions)), np.arange(len(self._template)))
         squares = np.maximum(np.sum(rest**2, axis=0), len(poses) * DARKEST**2)
         gains = np.zeros(len(expressions.vertices))
         for e, weights in enumerate(np.eye(len(expressions))):
             entries = slice(*expressions.starts[e : e + 2])
-            change = np.sum(rest * (self._brightness(surfaces, weights) - rest), axis=0) / squares
-            gains[entries] = change[expressions.vertices[entries]]
+            reached = expressions.vertices[entries]
+            change = self._brightness(surfaces, weights, reached) - rest[:, reached]
+            gains[entries] = np.sum(rest[:, reached] * change, axis=0) / squares[reached]
         return replace(expressions, gains=gains.astype(np.float32))
 
     def _brightness(
         self,
         surfaces: Sequence[MovedSurface],
         weights: Array,  # [E]
+        vertices: Array,  # [n] int
     ) -> Array:
-        """The light [S, T] on the template's vertices, all colours together."""
+        """The light [S, n] on some of the template's vertices, all colours together."""
         expressions, bind = self._character.expressions, self._character.mesh.vertices
         assert expressions is not None
         face = expressions.displacement(weights, vertices=len(bind))
@@ -95,18 +98,20 @@ class SimulatedTeacher(StillTeacher):
         found = []
         for surface in surfaces:
             moved = surface.places + self._skinned.carried(surface.joints, face)
-            light = self._light(surface.joints, surface.dual, moved, turn)
-            found.append(light.gain[self._template].sum(axis=1))
+            light = self._light(surface.joints, surface.dual, moved, turn, self._template[vertices])
+            found.append(light.gain.sum(axis=1))
         return np.stack(found)
 
     def _coarse(self, displacement: Array) -> Array:
         """The long waves [T, 3] of a displacement [V, 3], which the canonical mesh takes on."""
         return np.asarray(self._longer(displacement)[self._template])
 
-    def _light(self, joints: Array, dual: Array, moved: Array, turn: Array) -> Light:
-        """Light on the surface at `moved` [V, 3], brought to canonical space."""
-        bones = self._moving.bones
-        normals = rotation.rotate(rotation.multiply(dual[:, :4], turn), self._normals)
+    def _light(
+        self, joints: Array, dual: Array, moved: Array, turn: Array, vertices: Array | slice = slice(None)
+    ) -> Light:
+        """Light on some vertices of the surface at `moved` [V, 3], brought to canonical space."""
+        bones, dual, moved = self._moving.bones, dual[vertices], moved[vertices]
+        normals = rotation.rotate(rotation.multiply(dual[:, :4], turn[vertices]), self._normals[vertices])
         visible = visibility(moved, normals, bones.posed(joints), bones.radii)
         heading = heading_of(joints[self._character.skeleton.root, :4])
         light = shade(normals, visible, heading=heading)

@@ -1,5 +1,6 @@
 """From a deformed and lit surface, by vertex, to the Gaussian texture, by texel."""
 
+from concurrent.futures import ThreadPoolExecutor
 from copy import copy
 
 import numpy as np
@@ -45,23 +46,25 @@ class SurfaceTexels:
         relief = self._dense @ mesh.vertices - self._coarse @ rig.mesh.vertices
         picture = finer_picture(character.base_color, texels.size)
         wanted = sharpness(picture)
-        surfels = rest_surfels(
-            mesh,
-            size=texels.size,
-            texels=texels.texels,
-            triangles=triangles,
-            barycentrics=barycentrics,
-            wanted=wanted.at(texels.texels),
-        )
+        uv = np.einsum("nk,nkc->nc", barycentrics, mesh.uv[mesh.uv_faces[triangles]])
+        albedo = sample_albedo(character.base_color, uv, texels.size)
+        with ThreadPoolExecutor(1) as pool:
+            shown = pool.submit(showing_instead, character, corners, barycentrics, solid=albedo[:, 3] >= SOLID)
+            surfels = rest_surfels(
+                mesh,
+                size=texels.size,
+                texels=texels.texels,
+                triangles=triangles,
+                barycentrics=barycentrics,
+                wanted=wanted.at(texels.texels),
+            )
         relief += surfels.aside
         deviations = np.exp(surfels.log_scales[:, :2]).min(axis=1)
         below = depths(self._dense @ mesh.vertices, normals=surfels.normals, deviations=deviations)
         relief -= below[:, None] * surfels.normals
-        uv = np.einsum("nk,nkc->nc", barycentrics, mesh.uv[mesh.uv_faces[triangles]])
-        albedo = sample_albedo(character.base_color, uv, texels.size)
         at_home = _at_home(uv, texels) & ~surfels.at_border  # beyond it lies the image of another chart
         albedo[at_home, :3] = _sharp(picture, wanted)[texels.texels[at_home]]
-        albedo[:, :3] = albedo[showing_instead(character, corners, barycentrics, solid=albedo[:, 3] >= SOLID), :3]
+        albedo[:, :3] = albedo[shown.result(), :3]
         self._relief, self._rest, self._log_scales, self._albedo = (
             np.ascontiguousarray(rows.T, dtype=np.float32)
             for rows in (relief, surfels.smooth, surfels.log_scales, albedo[:, :3])
