@@ -16,7 +16,7 @@ from mua import rotation
 from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.avatar.model import Branch, Coarse, DetailBand, Layer, Mlp, Wavelet
-from mua.channels import LEVELS
+from mua.channels import LEVELS, WAVELET
 from mua.limits import MAX_INFLUENCES
 from mua.pose.clip import Clip
 from mua.pose.encoding import Components, Normalization, PoseEncoding
@@ -38,7 +38,6 @@ ENTRIES = np.linspace(17, 1198, 66).astype(int)  # vertices of each expression
 MOVE, LIGHT = 0.003, 0.1  # metres and a share of colours, standard deviations
 JOINTS = 54  # all of them encoded, as in the family's released character
 VALID = 300_000 / 768**2  # share of the texels that are valid (paper, Animatable Coarse Geometry)
-WAVELET = "bior4.4"
 ENCODING = PoseEncoding(joints=tuple(range(1, JOINTS)), rate=25.0)
 FRAMES = 50  # frames of the clip
 FARTHEST = 100.0  # standard deviation of a component

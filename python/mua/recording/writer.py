@@ -11,7 +11,7 @@ import numpy as np
 
 from mua.arguments import PathLike, as_path, describe, whole_number
 from mua.arrays import Array
-from mua.channels import CHANNELS, COARSE_TEXELS
+from mua.channels import CHANNELS, COARSE_TEXELS, WAVELET
 from mua.errors import InputError
 from mua.files.lock import DirectoryLock
 from mua.limits import LARGEST_RATE, LEAST_RATE
@@ -35,7 +35,6 @@ from mua.recording.layout import (
     RIG,
     SHARDS,
     SUM,
-    WAVELET,
     Header,
     open_array,
     read_header,
