@@ -22,8 +22,6 @@ ATTRIBUTES = {
 SH_C0 = 0.28209479177387814  # 1 / (2 sqrt(pi))
 SH_C1 = 0.4886025119029199  # sqrt(3 / (4 pi))
 
-WAVELET = "bior4.4"  # that a recording takes where its writer names none
-
 # Wavelet levels of a texture: coarse ones vary with the frame, fine ones are means (paper, Methodology).
 DYNAMIC_LEVELS, STATIC_LEVELS = 2, 2  # D3 and D2; D1 and D0
 LEVELS = DYNAMIC_LEVELS + STATIC_LEVELS

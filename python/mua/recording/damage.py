@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from mua.channels import WAVELET
 from mua.errors import InputError
+from mua.filters import WAVELET
 from mua.pose.clip import is_averaged
 from mua.recording.encode import load_reference
 from mua.recording.layout import (

@@ -4,11 +4,11 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-import pywt
 
 from mua.arrays import Array
 from mua.avatar.model import Branch, Coarse, DetailBand, Layer, Mlp, Wavelet
-from mua.channels import APPEARANCE, COARSE_TEXELS, FINE_TEXELS, GEOMETRY, LEVELS, WAVELET
+from mua.channels import APPEARANCE, COARSE_TEXELS, FINE_TEXELS, GEOMETRY, LEVELS
+from mua.filters import WAVELET, filters
 from mua.pose.encoding import Components, Normalization
 from mua.student.settings import Ranks, Settings
 
@@ -39,7 +39,6 @@ def outline(settings: Settings, body: Body) -> Outline:
     """The student of these settings on a body."""
     normalization = Normalization(_blank(body.descriptor), _blank(body.descriptor))
     directions, ranges = _blank(body.inputs, body.descriptor), _blank(2, body.inputs)
-    filters = pywt.Wavelet(body.wavelet)
     return Outline(
         Components(normalization, directions, ranges, _blank(body.inputs)),
         Coarse(
@@ -49,8 +48,14 @@ def outline(settings: Settings, body: Body) -> Outline:
         ),
         _branch(settings, settings.geometry, GEOMETRY.stop - GEOMETRY.start, body),
         _branch(settings, settings.appearance, APPEARANCE.stop - APPEARANCE.start, body),
-        Wavelet(body.wavelet, LEVELS, np.array(filters.rec_lo), np.array(filters.rec_hi)),
+        wavelet_of(body.wavelet),
     )
+
+
+def wavelet_of(name: str) -> Wavelet:
+    """The synthesis of a student's textures by the wavelet of this name."""
+    bank = filters(name)
+    return Wavelet(name, LEVELS, bank.rec_lo, bank.rec_hi)
 
 
 def _branch(settings: Settings, ranks: Ranks, channels: int, body: Body) -> Branch:
