@@ -112,6 +112,13 @@ def synthesise_lowpass(
     )
 
 
+def lines_of_texture(wavelet: str, n: int, levels: int) -> tuple[Array, Array]:
+    """What n low-pass and n high-pass samples each add, along one axis, to n 2^levels texels: two [n 2^levels, n]."""
+    first = _synthesis_matrix(wavelet, 2 * n)
+    lines = _lowpass_synthesis_matrix(wavelet, 2 * n, levels - 1) @ first
+    return lines[:, :n], lines[:, n:]
+
+
 def _both_axes(
     x: Tensor,  # [..., H, W]
     rows: Array,  # [H', H]
