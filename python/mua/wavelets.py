@@ -11,13 +11,13 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-import pywt
 import torch
 from torch import Tensor
 
 from mua.arrays import Array
 from mua.channels import DYNAMIC_LEVELS, STATIC_LEVELS
 from mua.errors import InputError
+from mua.filters import filters
 
 
 class Bands(NamedTuple):
@@ -112,6 +112,13 @@ def synthesise_lowpass(
     )
 
 
+def lines_of_texture(wavelet: str, n: int, levels: int) -> tuple[Array, Array]:
+    """What n low-pass and n high-pass samples each add, along one axis, to n 2^levels texels: two [n 2^levels, n]."""
+    first = _synthesis_matrix(wavelet, 2 * n)
+    lines = _lowpass_synthesis_matrix(wavelet, 2 * n, levels - 1) @ first
+    return lines[:, :n], lines[:, n:]
+
+
 def _both_axes(
     x: Tensor,  # [..., H, W]
     rows: Array,  # [H', H]
@@ -132,22 +139,17 @@ def _check_divisible(x: Tensor, levels: int) -> None:
         )
 
 
-def filters(wavelet: str) -> pywt.Wavelet:
-    """The filter bank of a discrete wavelet by its PyWavelets name; raises InputError where there is none."""
-    if wavelet not in pywt.wavelist(kind="discrete"):
-        raise InputError(f"wavelet: {wavelet!r} is unknown, expected one of PyWavelets' such as 'bior4.4'")
-    return pywt.Wavelet(wavelet)
-
-
 @lru_cache(maxsize=64)
 def _analysis_matrix(wavelet: str, n: int) -> Array:
     """[n, n] float64: n / 2 low-pass rows, then as many high-pass; row o of taps f is sum_j f[j] x[2 o + L / 2 - j]."""
     bank = filters(wavelet)
-    matrix = np.zeros((n, n))
-    output, tap = np.meshgrid(np.arange(n // 2), np.arange(bank.dec_len), indexing="ij")
-    source = (2 * output + bank.dec_len // 2 - tap) % n
-    np.add.at(matrix, (output, source), np.asarray(bank.dec_lo)[tap])
-    np.add.at(matrix, (output + n // 2, source), np.asarray(bank.dec_hi)[tap])
+    if bank.dec_lo is None or bank.dec_hi is None:
+        return np.linalg.inv(_synthesis_matrix(wavelet, n))
+    matrix, length = np.zeros((n, n)), len(bank.dec_lo)
+    output, tap = np.meshgrid(np.arange(n // 2), np.arange(length), indexing="ij")
+    source = (2 * output + length // 2 - tap) % n
+    np.add.at(matrix, (output, source), bank.dec_lo[tap])
+    np.add.at(matrix, (output + n // 2, source), bank.dec_hi[tap])
     return matrix
 
 
@@ -155,11 +157,11 @@ def _analysis_matrix(wavelet: str, n: int) -> Array:
 def _synthesis_matrix(wavelet: str, n: int) -> Array:
     """[n, n] float64, the inverse of the analysis: coefficient o adds r[k] to output 2 o + k + 1 - L / 2."""
     bank = filters(wavelet)
-    matrix = np.zeros((n, n))
-    coefficient, tap = np.meshgrid(np.arange(n // 2), np.arange(bank.rec_len), indexing="ij")
-    target = (2 * coefficient + tap + 1 - bank.rec_len // 2) % n
-    np.add.at(matrix, (target, coefficient), np.asarray(bank.rec_lo)[tap])
-    np.add.at(matrix, (target, coefficient + n // 2), np.asarray(bank.rec_hi)[tap])
+    matrix, length = np.zeros((n, n)), len(bank.rec_lo)
+    coefficient, tap = np.meshgrid(np.arange(n // 2), np.arange(length), indexing="ij")
+    target = (2 * coefficient + tap + 1 - length // 2) % n
+    np.add.at(matrix, (target, coefficient), bank.rec_lo[tap])
+    np.add.at(matrix, (target, coefficient + n // 2), bank.rec_hi[tap])
     return matrix
 
 

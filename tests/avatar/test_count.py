@@ -11,12 +11,13 @@ PAPER_PARAMETERS = 26.67e6  # paper, Tab. Comparison
 PAPER_FLOPS = 0.52e9
 PAPER_TEXELS = 300_000  # paper, Animatable Coarse Geometry
 PAPER_INPUTS = 981  # as many components as the descriptor has numbers: the most that there can be
+PAPER_WAVELET = "bior4.4"  # which it does not state
 PAPER_VERTICES = 5_514  # template of the family's released character
 
 
 def paper_avatar() -> Outline:
     descriptor = PoseEncoding(joints=tuple(range(1, 54)), rate=25).width
-    return outline(preset("paper"), Body(descriptor, PAPER_INPUTS, PAPER_VERTICES, PAPER_TEXELS))
+    return outline(preset("paper"), Body(descriptor, PAPER_INPUTS, PAPER_VERTICES, PAPER_TEXELS, PAPER_WAVELET))
 
 
 def test_paper_setting_costs_no_more_than_published() -> None:

@@ -234,7 +234,7 @@ def test_refuses_a_directory_of_another_rig_rate_or_wavelet(written: Path) -> No
         TeacherWriter(written, other, rate=RATE)
     with pytest.raises(InputError, match=r"rate is 24\.0, expected 30\.0"):
         opened(written, rate=30)
-    with pytest.raises(InputError, match=r"wavelet is 'bior4\.4', expected 'bior2\.2'"):
+    with pytest.raises(InputError, match=r"wavelet is 'spline3', expected 'bior2\.2'"):
         opened(written, wavelet="bior2.2")
 
 

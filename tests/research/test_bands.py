@@ -11,8 +11,9 @@ from compared import trained
 
 from mua.asset import count
 from mua.channels import APPEARANCE, GEOMETRY
-from mua.student.export import export_branches, export_coarse, export_wavelet
+from mua.student.export import export_branches, export_coarse
 from mua.student.model import Student
+from mua.student.outline import wavelet_of
 from mua_research.bands import BandNetwork, Convolutions, Lines, scale_branch, start_convolutions, texture_encoding
 from mua_research.network import NetworkSystem
 from mua_research.system import Budget, TrainingFrames
@@ -31,7 +32,7 @@ def test_ours_costs_what_its_file_says(smooth_frames: TrainingFrames) -> None:
     system = trained("ours", smooth_frames, Budget(steps=1))
     student = as_student(system, smooth_frames)
     geometry, appearance = export_branches(student)
-    wavelet = export_wavelet(student)
+    wavelet = wavelet_of(student.wavelet)
     avatar: Any = SimpleNamespace(
         components=SimpleNamespace(directions=np.zeros((0, 0)), margins=()),  # all systems read the same
         coarse=export_coarse(student.coarse),

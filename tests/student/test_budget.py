@@ -7,7 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from trainings import FINISHED, Training
+from recordings import add, frames, opened
+from synthetic_avatar import synthetic_rig
+from trainings import FINISHED, SMALL, Training
 
 from mua.asset import read
 from mua.asset.count import flops
@@ -15,7 +17,9 @@ from mua.asset.tensors import Storage
 from mua.asset.write import encode
 from mua.bench.random_avatar import random_avatar
 from mua.errors import InputError
+from mua.recording import Recording
 from mua.student.budget import FRONTIER, Sizes, cost, within_budget
+from mua.student.distil import body_of
 from mua.student.outline import Body
 from mua.student.settings import Budget, Settings, preset
 
@@ -91,3 +95,14 @@ def test_a_larger_budget_costs_more_and_its_bases_miss_less(written: Path, tmp_p
         missed.append([training["rms"][attribute]["best"] for attribute in ("offset", "SH")])
     assert spent[0] < spent[1]
     assert np.all(np.array(missed[1]) <= np.array(missed[0]) * (1 + ROUNDING))
+
+
+def test_a_budget_counts_the_taps_of_the_recordings_wavelet(tmp_path: Path) -> None:
+    spent = []
+    for wavelet in ("bior2.2", "bior4.4"):
+        with opened(tmp_path / wavelet, wavelet=wavelet) as writer:
+            add(writer, *frames(2))
+        settings = replace(SMALL, texels=synthetic_rig().texels.size)
+        spent.append(cost(settings, body_of(Recording(tmp_path / wavelet), settings), "f16"))
+    assert (spent[0].mflop or 0) < (spent[1].mflop or 0)
+    assert spent[0].mb == spent[1].mb

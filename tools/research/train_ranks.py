@@ -112,6 +112,7 @@ def fitted(recording: Recording, settings: Settings, seen: Bands, run: Run) -> S
             parts=samples.parts,
             sensitivities=seen,
             frames=counts,
+            wavelet=student.wavelet,
         )
     student.requires_grad_(False).eval()
     low = student.mean_lowpass() if counts is None else mean_lowpass(student, samples)

@@ -67,9 +67,9 @@ class Coarse:
 
 @dataclass(frozen=True, eq=False)
 class Wavelet:
-    """Synthesis filters of a biorthogonal wavelet in periodization mode; LL size x 2^(levels - coarser) texels."""
+    """Synthesis filters of a wavelet in periodization mode; LL size x 2^(levels - coarser) texels."""
 
-    name: str  # as in PyWavelets, e.g. bior4.4
+    name: str  # spline3, or as in PyWavelets, e.g. bior4.4
     levels: int  # 4
     rec_lo: Array  # [L] float64
     rec_hi: Array  # [L] float64

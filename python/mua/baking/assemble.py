@@ -17,8 +17,9 @@ from mua.pose.encoding import PoseEncoding
 from mua.rig.bounds import playback_bounds
 from mua.rig.rig import Rig
 from mua.rig.triangulate import triangulate
-from mua.student.export import export_branches, export_coarse, export_components, export_wavelet
+from mua.student.export import export_branches, export_coarse, export_components
 from mua.student.model import Student
+from mua.student.outline import wavelet_of
 from mua.version import __version__
 
 THUMBNAIL = 256  # pixels
@@ -46,7 +47,7 @@ def assemble(
         coarse=export_coarse(student.coarse),
         geometry=geometry,
         appearance=appearance,
-        wavelet=export_wavelet(student),
+        wavelet=wavelet_of(student.wavelet),
         clips=tuple(clips if stored is None else stored),
         bounds=playback_bounds(rig, clips if bounded is None else bounded),
         thumbnail=b"",

@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterable
 
 from mua.baking.listener import Listener
 from mua.baking.settings import BakeSettings
+from mua.filters import WAVELET
 from mua.pose.clip import Clip
 from mua.pose.encoding import RATE
 from mua.recording import PlannedClip, Recording
@@ -37,8 +38,8 @@ def recorded(
 
 
 def recording_key(teacher: Iterable[bytes], planned: list[PlannedClip]) -> str:
-    """Changes with the teacher, given as the bytes that it depends on, with the clips and with what is kept of them."""
-    digest = hashlib.sha256(__version__.encode())
+    """Changes with the wavelet, the teacher (the bytes that it depends on), the clips and what is kept of them."""
+    digest = hashlib.sha256(f"{__version__} {WAVELET}".encode())
     for part in teacher:
         digest.update(part)
     for clip in planned:

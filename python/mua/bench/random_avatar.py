@@ -10,13 +10,13 @@ from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
-import pywt
 
 from mua import rotation
 from mua.arrays import Array
 from mua.asset.avatar import Avatar
-from mua.avatar.model import Branch, Coarse, DetailBand, Layer, Mlp, Wavelet
+from mua.avatar.model import Branch, Coarse, DetailBand, Layer, Mlp
 from mua.channels import LEVELS
+from mua.filters import WAVELET
 from mua.limits import MAX_INFLUENCES
 from mua.pose.clip import Clip
 from mua.pose.encoding import Components, Normalization, PoseEncoding
@@ -26,6 +26,7 @@ from mua.rig.expressions import Expressions
 from mua.rig.rig import Rig
 from mua.rig.texel_map import build_texel_map
 from mua.rig.triangulate import triangulate
+from mua.student.outline import wavelet_of
 from mua.student.settings import Ranks, Settings
 
 HEIGHT, RADIUS = 1.7, 0.18  # metres
@@ -38,7 +39,6 @@ ENTRIES = np.linspace(17, 1198, 66).astype(int)  # vertices of each expression
 MOVE, LIGHT = 0.003, 0.1  # metres and a share of colours, standard deviations
 JOINTS = 54  # all of them encoded, as in the family's released character
 VALID = 300_000 / 768**2  # share of the texels that are valid (paper, Animatable Coarse Geometry)
-WAVELET = "bior4.4"
 ENCODING = PoseEncoding(joints=tuple(range(1, JOINTS)), rate=25.0)
 FRAMES = 50  # frames of the clip
 FARTHEST = 100.0  # standard deviation of a component
@@ -67,7 +67,7 @@ def random_avatar(settings: Settings) -> Avatar:
         ),
         geometry=_branch(rng, rig, settings, settings.geometry, geometry_means, geometry_spreads),
         appearance=_branch(rng, rig, settings, settings.appearance, [0.0] * 12, [SHADE] * 12),
-        wavelet=_wavelet(),
+        wavelet=wavelet_of(WAVELET),
         clips=(_clip(rig.skeleton),),
         bounds=np.array([[-1, -0.3, -1], [1, HEIGHT + 0.3, 1]], dtype=np.float32),
         thumbnail=b"",
@@ -151,11 +151,6 @@ def _clip(skeleton: Skeleton) -> Clip:
     axes = np.tile([0.0, 0.0, 1.0], (FRAMES, JOINTS, 1))
     rotations = rotation.from_axis_angle(axes, np.tile(swing[:, None], (1, JOINTS)))
     return Clip("sway", ENCODING.rate, rotations, np.tile(skeleton.bind_translations, (FRAMES, 1, 1)))
-
-
-def _wavelet() -> Wavelet:
-    taps = pywt.Wavelet(WAVELET)
-    return Wavelet(WAVELET, LEVELS, np.array(taps.rec_lo), np.array(taps.rec_hi))
 
 
 def _branch(

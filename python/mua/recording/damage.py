@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from mua.errors import InputError
+from mua.filters import WAVELET
 from mua.pose.clip import is_averaged
 from mua.recording.encode import load_reference
 from mua.recording.layout import (
@@ -12,7 +13,6 @@ from mua.recording.layout import (
     REFERENCE,
     SHARDS,
     SUM,
-    WAVELET,
     Header,
     Index,
     Segment,

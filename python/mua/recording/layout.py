@@ -17,7 +17,6 @@ from mua.recording.rig_file import rig_hash
 from mua.rig.rig import Rig
 
 VERSION = 2
-WAVELET = "bior4.4"  # the default of a writer
 HEADER, RIG, REFERENCE, SHARDS = "recording.json", "rig.npz", "reference.npz", "shards"
 INDEX, SUM = "index.json", "sum.npy"
 BLOCK = 1 << 20  # bytes of a file at once

@@ -14,6 +14,7 @@ from mua.arrays import Array
 from mua.channels import CHANNELS, COARSE_TEXELS
 from mua.errors import InputError
 from mua.files.lock import DirectoryLock
+from mua.filters import WAVELET, filters
 from mua.limits import LARGEST_RATE, LEAST_RATE
 from mua.pose.clip import is_averaged
 from mua.pose.skeleton import Pose
@@ -35,7 +36,6 @@ from mua.recording.layout import (
     RIG,
     SHARDS,
     SUM,
-    WAVELET,
     Header,
     open_array,
     read_header,
@@ -48,7 +48,6 @@ from mua.recording.rig_file import write_rig
 from mua.recording.shard import Shard
 from mua.rig.rig import Rig
 from mua.texture.fill import Fill
-from mua.wavelets import filters
 
 POSES_PER_SHARD = 4096  # a shard ends here at the latest, however few of its frames are recorded
 ROTATIONS = ", unit quaternions wxyz; from_axis_angle and from_matrix of mua.rotation make them"

@@ -10,6 +10,7 @@ from mua.student.factorize import blendshapes, frame_weights, separable_blendsha
 from mua.student.model import Alphas, Branch, outer_products
 from mua.student.settings import Settings
 from mua.student.source import Source
+from mua.student.texture_metric import in_texture, to_subbands
 from mua.training.optimise import Progress, Run
 from mua.wavelets import Bands
 
@@ -25,6 +26,7 @@ def factorize_branch(
     run: Run,
     sensitivities: Bands | None = None,  # of images to the samples of the branch's channels, for one frame
     counts: Tensor | None = None,  # [F] how much each frame counts
+    wavelet: str | None = None,  # of the subbands, to fit the texture that they make; None: errors of subbands count
 ) -> tuple[Tensor, Tensor]:
     """Set means and bases of `branch` channel by channel; returns coefficients [F, M] and the texel variance [C].
 
@@ -40,11 +42,14 @@ def factorize_branch(
     energy = room(branch.channels)
     for done, channel in enumerate(owned, start=1):
         bands = Bands(*(band.to(run.device) for band in source(slice(channel, channel + 1), torch.arange(frames))))
+        bands = bands if wavelet is None else in_texture(bands, wavelet)
         generator = run.alone(f"{stage} {channel}").generator  # whichever process solves for it draws the same numbers
         worth = None if sensitivities is None else worth_of(sensitivities, channel)
         solved, energy[channel] = factorize_channel(
             branch, channel, bands, sweeps=settings.sweeps, generator=generator, worth=worth, counts=counts
         )
+        if wavelet is not None:
+            to_subbands(branch, channel, wavelet)
         for level, own in zip(alphas, solved, strict=True):
             level[:, channel] = own
         run.report(Progress(stage, done, len(owned), None, done / (time.monotonic() - started)))

@@ -120,7 +120,7 @@ def encoding_of(recording: Recording, settings: Settings) -> PoseEncoding:
 def body_of(recording: Recording, settings: Settings) -> Body:
     """What the cost of a student of `recording` follows from, with as many components of the pose as there can be."""
     width, rig = encoding_of(recording, settings).width, recording.rig
-    return Body(width, width, len(rig.mesh.vertices), len(rig.texels.texels))
+    return Body(width, width, len(rig.mesh.vertices), len(rig.texels.texels), recording.wavelet)
 
 
 def describe_frames(recording: Recording, encoding: PoseEncoding, *, held_out: bool = False) -> Array:

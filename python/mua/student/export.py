@@ -8,18 +8,11 @@ from torch import Tensor
 
 from mua.arrays import Array
 from mua.avatar import model
-from mua.channels import APPEARANCE, GEOMETRY, LEVELS
+from mua.channels import APPEARANCE, GEOMETRY
 from mua.pose.encoding import Components, Normalization
 from mua.student.model import Branch, Coarse, Detail, Student, linear_layers
-from mua.wavelets import filters
 
 LARGEST_ROW = 1024.0  # limit of a last layer's weights: larger ones are exchanged for larger blendshapes
-
-
-def export_wavelet(student: Student) -> model.Wavelet:
-    """The synthesis filters of the student's wavelet."""
-    bank = filters(student.wavelet)
-    return model.Wavelet(student.wavelet, LEVELS, np.asarray(bank.rec_lo), np.asarray(bank.rec_hi))
 
 
 def export_components(student: Student) -> Components:

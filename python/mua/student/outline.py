@@ -4,11 +4,11 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-import pywt
 
 from mua.arrays import Array
 from mua.avatar.model import Branch, Coarse, DetailBand, Layer, Mlp, Wavelet
 from mua.channels import APPEARANCE, COARSE_TEXELS, FINE_TEXELS, GEOMETRY, LEVELS
+from mua.filters import WAVELET, filters
 from mua.pose.encoding import Components, Normalization
 from mua.student.settings import Ranks, Settings
 
@@ -21,6 +21,7 @@ class Body:
     inputs: int = 0  # components of it that the MLPs read
     vertices: int = 0
     texels: int = 0  # valid ones
+    wavelet: str = WAVELET
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,11 +35,10 @@ class Outline:
     wavelet: Wavelet
 
 
-def outline(settings: Settings, body: Body, *, wavelet: str = "bior4.4") -> Outline:
+def outline(settings: Settings, body: Body) -> Outline:
     """The student of these settings on a body."""
     normalization = Normalization(_blank(body.descriptor), _blank(body.descriptor))
     directions, ranges = _blank(body.inputs, body.descriptor), _blank(2, body.inputs)
-    filters = pywt.Wavelet(wavelet)
     return Outline(
         Components(normalization, directions, ranges, _blank(body.inputs)),
         Coarse(
@@ -48,8 +48,14 @@ def outline(settings: Settings, body: Body, *, wavelet: str = "bior4.4") -> Outl
         ),
         _branch(settings, settings.geometry, GEOMETRY.stop - GEOMETRY.start, body),
         _branch(settings, settings.appearance, APPEARANCE.stop - APPEARANCE.start, body),
-        Wavelet(wavelet, LEVELS, np.array(filters.rec_lo), np.array(filters.rec_hi)),
+        wavelet_of(body.wavelet),
     )
+
+
+def wavelet_of(name: str) -> Wavelet:
+    """The synthesis of a student's textures by the wavelet of this name."""
+    bank = filters(name)
+    return Wavelet(name, LEVELS, bank.rec_lo, bank.rec_hi)
 
 
 def _branch(settings: Settings, ranks: Ranks, channels: int, body: Body) -> Branch:

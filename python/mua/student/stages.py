@@ -104,7 +104,13 @@ def train(
     if only == "coarse":
         return
     warm = partial(
-        fit_branch, components=components, parts=samples.parts, until=only, sensitivities=seen, frames=counts
+        fit_branch,
+        components=components,
+        parts=samples.parts,
+        until=only,
+        sensitivities=seen,
+        frames=counts,
+        wavelet=student.wavelet,
     )
     fit = fit_branch_from_noise if random else warm
 
@@ -200,6 +206,7 @@ def fit_branch(
     until: StageName | None = None,
     sensitivities: Bands | None = None,  # sensitivities of images to the samples of all 23 channels, for one frame
     frames: Tensor | None = None,  # [F] how much each frame counts
+    wavelet: str | None = None,  # of the subbands, as `factorize_branch` takes it
 ) -> None:
     """Fit one branch: closed-form bases, regression of the MLP on their coefficients, joint fine-tuning.
 
@@ -215,6 +222,7 @@ def fit_branch(
         run=run.alone(stage),
         sensitivities=None if sensitivities is None else sensitivities.of(channels),
         counts=frames,
+        wavelet=wavelet,
     )
     release_memory()
     weights = channel_weights(variance, channels, size=run.size)

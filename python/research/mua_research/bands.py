@@ -15,12 +15,13 @@ from torch import Tensor, nn
 
 from mua.asset.count import synthesis
 from mua.channels import APPEARANCE, CHANNELS, COARSE_TEXELS, DYNAMIC_LEVELS, GEOMETRY, LEVELS
+from mua.filters import filters
 from mua.student.finetune import subband_loss
 from mua.student.model import Branch, lowpass_texels
 from mua.student.settings import Ranks
 from mua.student.stages import fit_branch
 from mua.training.optimise import Run
-from mua.wavelets import Bands, filters
+from mua.wavelets import Bands
 from mua_research.maps import CHANNELS as MAP_CHANNELS
 from mua_research.maps import SurfaceMaps
 from mua_research.network import Network, mlp_flops, parameter_groups
@@ -203,7 +204,7 @@ class BandNetwork(Network):
     def flops(self) -> int:
         """Networks, blendshapes, synthesis and the mean; making the maps is part of posing, as for every system."""
         side = self.maps[0].size
-        taps = filters(self.sizes.wavelet).rec_len
+        taps = len(filters(self.sizes.wavelet).rec_lo)
         total = synthesis(CHANNELS, side, DYNAMIC_LEVELS, LEVELS, taps=taps) + self.mean_texture.numel()
         total += sum(branch_flops(branch) for branch in self.branches)
         total += self.ll.flops(side) if self.ll is not None else 0

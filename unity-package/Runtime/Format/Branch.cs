@@ -1,9 +1,9 @@
 namespace Mua.Format
 {
-    /// <summary>Synthesis filters of a biorthogonal wavelet in periodization mode.</summary>
+    /// <summary>Synthesis filters of a wavelet in periodization mode.</summary>
     public sealed class Wavelet
     {
-        /// <summary>As in PyWavelets, such as `bior4.4`.</summary>
+        /// <summary>`spline3`, or as in PyWavelets, such as `bior4.4`.</summary>
         public string Name { get; internal set; }
 
         /// <summary>Levels from LL to the texture: size = LL size * 2^Levels.</summary>
