@@ -27,6 +27,7 @@ from mua.splatting.projection import Eye, TorchSplats
 from mua.splatting.rasterise import rasterise
 from mua.teachers.simulated.still import StillTeacher
 from mua.training.threads import while_next
+from mua.training.torch_threads import thread_share
 
 STEPS = 200  # each of one image
 POSES = 6  # beside that of the file
@@ -98,7 +99,7 @@ def _descend(
     progress: Callable[[int], None],
 ) -> Array:
     """Adam on the squared error of one image after another, each on a background of its own."""
-    count = len(poses[0].texture)
+    count, threads = len(poses[0].texture), torch.get_num_threads()
     changes = {name: torch.zeros(count, 3, requires_grad=True) for name in RATES}
     optimiser = torch.optim.Adam(
         [{"params": [change], "lr": RATES[name]} for name, change in changes.items()], betas=BETAS, eps=EPSILON
@@ -117,14 +118,15 @@ def _descend(
         shown, camera, background = view.shown, view.camera, view.background
         target = view.source[..., :3] + (1 - view.source[..., 3:]) * background
         splats = _splats(shown, _by(changes, widths), in_view(shown.centres, camera))
-        image = rasterise(splats, Eye.of(camera, shown.texture), shown.bounds, background)
+        image = rasterise(splats, Eye.of(camera, shown.texture), shown.bounds, background, threads=threads)
         optimiser.zero_grad()
         ((image - target).square().sum() + PRIOR * changes["colour"].square().sum()).backward()
         optimiser.step()
         schedule.step()
 
-    for done, _ in enumerate(while_next(descend, views()), start=1):
-        progress(done)
+    with thread_share(threads):  # its operations are too small to be divided
+        for done, _ in enumerate(while_next(descend, views()), start=1):
+            progress(done)
     with torch.no_grad():
         return np.asarray(_by(changes, widths).numpy())
 

@@ -31,12 +31,14 @@ def rasterise(
     eye: Eye,
     bounds: torch.Tensor,  # [2, 3] world box over which depth is keyed
     background: torch.Tensor | None = None,  # [3] or [H, W, 3] sRGB
+    *,
+    threads: int | None = None,  # that draw on the CPU, with gradients as well; None: as many as torch computes with
 ) -> torch.Tensor:
     """Premultiplied sRGB and alpha [H, W, 4], or sRGB [H, W, 3] over a background: what the reference renderer draws.
 
     It differs where the transmittance falls below 1e-5: nothing is blended there any more.
     """
-    (image,) = rasterise_views(splats, [eye], bounds)
+    (image,) = rasterise_views(splats, [eye], bounds, threads=threads)
     return image if background is None else image[..., :3] + (1 - image[..., 3:]) * background
 
 
@@ -44,22 +46,28 @@ def rasterise_views(
     splats: TorchSplats,
     eyes: Sequence[Eye],
     bounds: torch.Tensor,  # [2, 3] world box over which depth is keyed
+    *,
+    threads: int | None = None,  # as of `rasterise`
 ) -> list[torch.Tensor]:
     """Premultiplied sRGB and alpha [H, W, 4] of several cameras, each of a size of its own, by one launch."""
     quads = [project(splats, eye, bounds) for eye in eyes]
     colors = [colors_seen(splats, one.splats, eye) for one, eye in zip(quads, eyes, strict=True)]
     shapes = [one.shapes for one in quads]
-    return draw_quads(list(zip(shapes, colors, strict=True)), [eye.screen for eye in eyes])
+    return draw_quads(list(zip(shapes, colors, strict=True)), [eye.screen for eye in eyes], threads=threads)
 
 
 def draw_quads(
     quads: Sequence[tuple[torch.Tensor, torch.Tensor]],  # shapes [M, 6] and colours [M, 3] of quads, front to back
     screens: Sequence[tuple[int, int]],  # width, height, pixels
+    *,
+    threads: int | None = None,  # as of `rasterise`
 ) -> list[torch.Tensor]:
     """Premultiplied colour and alpha [H, W, 4] of each screen."""
     shapes, colors = (torch.cat(parts) for parts in zip(*quads, strict=True))
     assigned = [_tiles(own.detach(), screen) for (own, _), screen in zip(quads, screens, strict=True)]
-    images: torch.Tensor = _Draw.apply(shapes, colors, join(assigned, [len(own) for own, _ in quads]))
+    images: torch.Tensor = _Draw.apply(
+        shapes, colors, join(assigned, [len(own) for own, _ in quads]), threads or torch.get_num_threads()
+    )
     parts = images.split([one.pixels for one in assigned])
     return [part.reshape(height, width, 4) for part, (width, height) in zip(parts, screens, strict=True)]
 
@@ -85,14 +93,14 @@ def _tiles(shapes: torch.Tensor, screen: tuple[int, int]) -> Tiles:
 
 class _Draw(torch.autograd.Function):
     @staticmethod
-    def forward(context: Any, shapes: torch.Tensor, colors: torch.Tensor, tiles: Tiles) -> torch.Tensor:
+    def forward(context: Any, shapes: torch.Tensor, colors: torch.Tensor, tiles: Tiles, threads: int) -> torch.Tensor:
         shapes, colors = shapes.contiguous(), colors.contiguous()
         image, left = shapes.new_empty(tiles.pixels, 4), shapes.new_empty(tiles.pixels)
         ends = torch.empty(tiles.pixels, dtype=torch.int32, device=shapes.device)
         kernels = passes(REALS[shapes.dtype])
-        _by_parts(tiles, lambda part: _launch(kernels.forward, part, [shapes, colors, image, left, ends]))
+        _by_parts(tiles, lambda part: _launch(kernels.forward, part, [shapes, colors, image, left, ends]), threads)
         context.save_for_backward(shapes, colors, left, ends)
-        context.tiles = tiles
+        context.tiles, context.threads = tiles, threads
         return image
 
     @staticmethod
@@ -105,18 +113,18 @@ class _Draw(torch.autograd.Function):
             _launch(kernels.backward, part, [shapes, colors, left, ends, gradient, by_shapes, by_colors])
             return by_shapes, by_colors
 
-        by_shapes, by_colors = map(sum, zip(*_by_parts(context.tiles, added), strict=True))
-        return by_shapes, by_colors, None
+        by_shapes, by_colors = map(sum, zip(*_by_parts(context.tiles, added, context.threads), strict=True))
+        return by_shapes, by_colors, None, None
 
 
-def _by_parts(tiles: Tiles, work: Callable[[Tiles], T]) -> list[T]:
+def _by_parts(tiles: Tiles, work: Callable[[Tiles], T], threads: int) -> list[T]:
     """Results of all tiles, or of parts of them side by side: on the CPU Warp computes in the thread that calls it.
 
     There are as many parts whatever the threads, so that results do not depend on them.
     """
     if tiles.quads.device.type != "cpu":
         return [work(tiles)]
-    return list(in_order(work, split(tiles, PARTS), threads=min(torch.get_num_threads(), PARTS)))
+    return list(in_order(work, split(tiles, PARTS), threads=min(threads, PARTS)))
 
 
 def _launch(kernel: Any, tiles: Tiles, tensors: list[torch.Tensor], *numbers: float) -> None:
