@@ -33,7 +33,7 @@ from mua.rig.template import make_template
 from mua.rig.texel_binding import bind_texels
 from mua.teachers.simulated.still import StillTeacher
 from mua.teachers.simulated.teacher import SimulatedTeacher
-from mua.training.memory import release_memory
+from mua.training.memory import release_memory, return_large_blocks
 
 # Steps of the fit, and training frames for each further one: less than a tenth of the time of a bake.
 FEWEST_STEPS, FRAMES_OF_A_STEP = 40, 6
@@ -46,6 +46,7 @@ def bake(settings: BakeSettings, listener: Listener) -> Baked:
 
     Raises InputError for anything that cannot be used, and where another process is at work in the work directory.
     """
+    return_large_blocks()
     device = choose_device(settings.device)
     for directory in check_output(settings.output, settings.work):
         listener.note(f"There is no directory {directory}; it is created.")
