@@ -31,7 +31,7 @@ from mua.recording import PlannedClip, Recording
 from mua.rig.character import Character
 from mua.rig.template import make_template
 from mua.rig.texel_binding import bind_texels
-from mua.teachers.simulated.still import StillTeacher
+from mua.teachers.simulated.still import Prepared, StillTeacher
 from mua.teachers.simulated.teacher import SimulatedTeacher
 from mua.training.memory import release_memory, return_large_blocks
 
@@ -77,10 +77,12 @@ def _bake(settings: BakeSettings, device: torch.device, listener: Listener) -> B
     still = cache(partial(StillTeacher, character, texels=settings.student.texels))
     corrections = _fitted(settings, character, still, planned, listener)
     fidelity = _fidelity(settings, character, clips, still, corrections, listener)
+    prepared = None if character.source is None else _corrected(still(), corrections).prepared
     del still
     character = replace(character, source=None)  # its textures may be large
     release_memory()
-    recording = _record(settings, character, corrections, planned, listener)
+    recording = _record(settings, character, prepared, planned, listener, fitted=corrections is not None)
+    del prepared
     release_memory()
     distillation = Distillation(
         output=settings.output,
@@ -142,19 +144,25 @@ def _fidelity(
     if character.source is None:
         return None
     listener.stage("comparison with source")
-    teacher = still() if corrections is None else still().corrected(corrections)
+    teacher = _corrected(still(), corrections)
     fidelity, warnings = fidelity_of(character, clips, texels=settings.student.texels, teacher=teacher)
     for sentence in (*([] if fidelity is None else [report.summary(fidelity)]), *warnings):
         listener.note(sentence)
     return fidelity
 
 
+def _corrected(teacher: StillTeacher, corrections: Array | None) -> StillTeacher:
+    return teacher if corrections is None else teacher.corrected(corrections)
+
+
 def _record(
     settings: BakeSettings,
     character: Character,
-    corrections: Array | None,
+    prepared: Prepared | None,  # what the fit and the comparison had to compute
     planned: list[PlannedClip],
     listener: Listener,
+    *,
+    fitted: bool,  # whether the splats were corrected by images of the source
 ) -> Recording:
     """The stand-in teacher's recording."""
     texels, seed = settings.student.texels, settings.student.seed
@@ -162,9 +170,8 @@ def _record(
         listener.note(sentence)
     bare = replace(character, clips=())
     lit_in = usual_poses(planned)
-    teacher = partial(SimulatedTeacher, bare, texels=texels, corrections=corrections, lit_in=lit_in, seed=seed)
-    fitted = [] if corrections is None else [FITTED]
-    key = recording_key([*parts(settings, character), *fitted], planned)
+    teacher = partial(SimulatedTeacher, bare, texels=texels, prepared=prepared, lit_in=lit_in, seed=seed)
+    key = recording_key([*parts(settings, character), *([FITTED] if fitted else [])], planned)
     return recorded(teacher, key, settings, planned, listener)
 
 

@@ -1,6 +1,7 @@
 """The simulated character without simulation and light: what its splats show of the character's own surface."""
 
 from copy import copy
+from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
@@ -12,6 +13,7 @@ from mua.pose.skeleton import Pose
 from mua.rig.bones import figure_scale
 from mua.rig.build import build_rig
 from mua.rig.character import Character
+from mua.rig.rig import Rig
 from mua.rig.skinning import transform
 from mua.teacher import Light, TeacherFrame
 from mua.teachers.simulated.chords import straighten
@@ -19,6 +21,15 @@ from mua.teachers.simulated.smoothing import TURN_WAVELENGTH, low_pass
 from mua.teachers.simulated.surface import MovedSurface, SkinnedSurface
 from mua.teachers.simulated.texels import SurfaceTexels
 from mua.texture.surfels import SurfaceFrames
+
+
+@dataclass(frozen=True, eq=False)
+class Prepared:
+    """What a teacher derives from its character, which takes seconds; teachers in other processes may start from it."""
+
+    rig: Rig
+    template: Array  # [T] vertices of the character that the template keeps
+    texels: SurfaceTexels
 
 
 class StillTeacher:
@@ -31,17 +42,25 @@ class StillTeacher:
         texels: int,
         template_vertices: int = 5000,
         corrections: Array | None = None,  # [N, 9] beside offsets, log scales and albedo (mua.fidelity.fitting)
+        prepared: Prepared | None = None,  # by a teacher of the same character and sizes
     ) -> None:
         """Prepare a texture of `texels` x `texels`."""
         mesh = character.mesh
-        self.rig, self._template = build_rig(character, texels=texels, template_vertices=template_vertices)
+        if prepared is None:
+            rig, template = build_rig(character, texels=texels, template_vertices=template_vertices)
+            prepared = Prepared(rig, template, SurfaceTexels(character, rig))
+        self.rig, self._template, self._texels = prepared.rig, prepared.template, prepared.texels
         self._character = character
         self._skinned = SkinnedSurface(character)
         self._surface = SurfaceFrames(mesh.vertices, mesh.faces)
         self._smooth_turn = low_pass(mesh.vertices, mesh.faces, TURN_WAVELENGTH * figure_scale(mesh.vertices))
-        self._texels = SurfaceTexels(character, self.rig)
         if corrections is not None:
             self._texels = self._texels.corrected(corrections)
+
+    @property
+    def prepared(self) -> Prepared:
+        """Corrections included."""
+        return Prepared(self.rig, self._template, self._texels)
 
     def corrected(
         self,

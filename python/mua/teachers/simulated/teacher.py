@@ -25,7 +25,7 @@ from mua.teacher import Light, TeacherFrame
 from mua.teachers.simulated.shading import shade, visibility
 from mua.teachers.simulated.simulated_surface import SimulatedSurface
 from mua.teachers.simulated.smoothing import low_pass
-from mua.teachers.simulated.still import StillTeacher
+from mua.teachers.simulated.still import Prepared, StillTeacher
 from mua.teachers.simulated.surface import MovedSurface
 from mua.texture.surfels import vertex_normals
 
@@ -43,11 +43,13 @@ class SimulatedTeacher(StillTeacher):
         texels: int,
         template_vertices: int = 5000,
         corrections: Array | None = None,  # as StillTeacher takes them
+        prepared: Prepared | None = None,  # likewise
         lit_in: Sequence[Pose] = (),  # in which expressions change the light; none: in the bind pose
         seed: int = 0,
     ) -> None:
         """Prepare a texture of `texels` x `texels`; the seed chooses where the character's cloth folds."""
-        super().__init__(character, texels=texels, template_vertices=template_vertices, corrections=corrections)
+        sizes = {"texels": texels, "template_vertices": template_vertices}
+        super().__init__(character, **sizes, corrections=corrections, prepared=prepared)
         mesh = character.mesh
         self._moving = SimulatedSurface(character, seed=seed)
         self._normals = vertex_normals(mesh.vertices, mesh.faces)
