@@ -1,5 +1,6 @@
 """The simulated teacher: frames that keep the contract between canonical mesh, offsets and the texels' transforms."""
 
+import pickle
 from dataclasses import replace
 
 import numpy as np
@@ -55,6 +56,19 @@ def unsunk(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(depths, "SINK", 0.0)
     monkeypatch.setattr(rims, "FARTHEST", 0.0)
     monkeypatch.setattr(ends, "LEAST", 1.0)
+
+
+def test_a_teacher_takes_over_what_another_prepared(teacher: SimulatedTeacher) -> None:
+    """In another process: it goes there by pickle."""
+    character = tube(looseness=0.6)
+    corrections = np.full((len(teacher.rig.texels.texels), 9), 0.01)
+    still = StillTeacher(character, texels=SIZE).corrected(corrections)
+    other = SimulatedTeacher(character, texels=SIZE, prepared=pickle.loads(pickle.dumps(still.prepared)))
+    own = SimulatedTeacher(character, texels=SIZE, corrections=corrections)
+    frames = [whole_frames(one, swing(character))[-1] for one in (other, own)]
+    assert np.array_equal(frames[0].texture, frames[1].texture)
+    assert np.array_equal(frames[0].mesh, frames[1].mesh)
+    assert not np.array_equal(frames[0].texture, whole_frames(teacher, swing(character))[-1].texture)
 
 
 def test_whole_frames_have_the_shapes_of_the_rig(teacher: SimulatedTeacher) -> None:
