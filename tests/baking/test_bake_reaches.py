@@ -114,7 +114,7 @@ def run(
             return None, ()
 
         def teacher(
-            character: Character, *, texels: int, corrections: object = None, lit_in: object = None, seed: int = -1
+            character: Character, *, texels: int, prepared: object = None, lit_in: object = None, seed: int = -1
         ) -> None:
             late.character, late.texels, late.seed = character, texels, seed
 

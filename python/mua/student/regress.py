@@ -25,6 +25,7 @@ FIRST_LAYER = 0.3  # scale of the first layer's weights at the start: small ones
 VISITS = 32  # uses of each point; the function's values there are computed once
 POINTS_AT_ONCE = 1 << 9
 UNSHARED = 1e-4  # share of a direction that a part leaves to the others
+UNSEEN = 1e-5  # share of the spread in the columns of the descriptor that a part does not look at
 FORGONE = 1e-4  # share of the spread of a part's view of the descriptors
 GENERALISATION = Generalisation()
 
@@ -182,7 +183,7 @@ def visible(
 ) -> Tensor:
     """Columns [D], bool, without those of distant joints that add next to nothing to the distances between frames."""
     variance = inputs.var(0, correction=0)
-    return _largest(variance, FORGONE * (variance / (variance + INPUT_FLOOR)).sum() * INPUT_FLOOR)
+    return _largest(variance, UNSEEN * (variance / (variance + INPUT_FLOOR)).sum() * INPUT_FLOOR)
 
 
 def leading(

@@ -100,7 +100,7 @@ def _upsampling(size: int) -> sparse.csr_matrix:
     """Bilinear and periodic along one axis, [n, n / 2]."""
     fine = np.arange(size)
     near, far = fine // 2, (fine // 2 + 2 * (fine % 2) - 1) % (size // 2)
-    weights = np.repeat(np.float32([0.75, 0.25]), size)
+    weights = np.repeat(np.array([0.75, 0.25], dtype=np.float32), size)
     at = np.concatenate([fine, fine]), np.concatenate([near, far])
     return sparse.csr_matrix((weights, at), shape=(size, size // 2))
 
