@@ -72,17 +72,14 @@ def from_matrix(m: Array) -> Array:
     xx, yy, zz = m[..., 0, 0], m[..., 1, 1], m[..., 2, 2]
     yz, zx, xy = m[..., 2, 1] - m[..., 1, 2], m[..., 0, 2] - m[..., 2, 0], m[..., 1, 0] - m[..., 0, 1]
     sxy, szx, syz = m[..., 1, 0] + m[..., 0, 1], m[..., 0, 2] + m[..., 2, 0], m[..., 2, 1] + m[..., 1, 2]
-    candidates = np.stack(
-        [
-            np.stack([1 + xx + yy + zz, yz, zx, xy], axis=-1),
-            np.stack([yz, 1 + xx - yy - zz, sxy, szx], axis=-1),
-            np.stack([zx, sxy, 1 - xx + yy - zz, syz], axis=-1),
-            np.stack([xy, szx, syz, 1 - xx - yy + zz], axis=-1),
-        ],
-        axis=-2,
+    candidates = (
+        (1 + xx + yy + zz, yz, zx, xy),
+        (yz, 1 + xx - yy - zz, sxy, szx),
+        (zx, sxy, 1 - xx + yy - zz, syz),
+        (xy, szx, syz, 1 - xx - yy + zz),
     )
-    largest = np.argmax(np.diagonal(candidates, axis1=-2, axis2=-1), axis=-1)
-    q = normalize(np.take_along_axis(candidates, largest[..., None, None], axis=-2)[..., 0, :])
+    largest = np.argmax([candidates[part][part] for part in range(4)], axis=0)
+    q = normalize(np.stack([np.choose(largest, parts) for parts in zip(*candidates, strict=True)], axis=-1))
     return np.where(q[..., :1] < 0, -q, q)
 
 

@@ -100,6 +100,19 @@ def test_any_number_of_workers_leaves_the_same_files(alone: Path, tmp_path: Path
     assert sorted(heard) == heard
 
 
+def test_everything_is_on_the_disk_once_the_parts_are_joined(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Workers do not wait for it."""
+    fsync, synced = os.fsync, set()
+
+    def syncing(descriptor: int) -> None:
+        synced.add(os.fstat(descriptor).st_ino)
+        fsync(descriptor)
+
+    monkeypatch.setattr(os, "fsync", syncing)
+    run(tmp_path / "r", FormulaTeacher)
+    assert {path.stat().st_ino for path in (tmp_path, tmp_path / "r", *(tmp_path / "r").rglob("*"))} <= synced
+
+
 def test_a_killed_worker_is_reported_and_the_next_run_ends_in_the_same_files(alone: Path, tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"a process that records was ended by signal 9, perhaps for want of memory"):
         run(tmp_path / "r", Dying, tmp_path / "flag")

@@ -143,6 +143,14 @@ def test_every_file_of_a_shard_is_on_the_disk_before_the_shard_has_its_name(
     assert (tmp_path / "r" / "shards").stat().st_ino in synced
 
 
+def test_a_writer_that_need_not_be_durable_waits_for_no_shard(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    with opened(tmp_path, durable=False) as writer:
+        add(writer, *frames(1))  # the reference is synced in any case
+        monkeypatch.setattr(os, "fsync", lambda descriptor: pytest.fail("a shard was synced"))
+        add(writer, *frames(3)[1:])
+    assert Recording(tmp_path).count() == 3
+
+
 def test_a_shard_that_finds_no_room_is_not_left_half_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Neither where a frame kept whole finds none, which is written at once, nor where the rest does."""
     write_bytes = Path.write_bytes

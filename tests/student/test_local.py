@@ -22,7 +22,7 @@ from mua.student.distil import prepare
 from mua.student.factorize import truncated_svd
 from mua.student.local import POSE_FOR_LIGHT, Parts, body_parts, sample_locality, sample_owners, texture_locality
 from mua.student.model import Alphas
-from mua.student.regress import fit_local, whitening
+from mua.student.regress import factors, fit_local, visible, whitening
 from mua.student.targets import Targets
 
 # armature > hips > (spine > neck > head, thigh > shin)
@@ -172,6 +172,25 @@ def test_parts_that_do_not_fade_make_the_function_of_the_whole() -> None:
     components = boundless(inputs)
     whole = fit_local(inputs, shown, components, None, generator=torch.Generator().manual_seed(0))
     assert torch.allclose(smooth(inputs, shown, 1.0)(inputs), whole(components(inputs)), atol=1e-3)
+
+
+def test_a_part_is_fitted_in_the_directions_that_it_varies_in() -> None:
+    directions = torch.linalg.qr(torch.randn(12, 3, generator=torch.Generator().manual_seed(0))).Q
+    for own in (directions, directions[:, :0]):  # the second has no samples
+        share = own @ own.T
+        narrow, wide = factors(share)
+        assert torch.allclose(narrow @ wide, share, atol=1e-5)
+        assert own.shape[1] == 0 or narrow.shape == (12, 3)
+
+
+def test_a_part_is_blind_to_joints_that_tell_frames_hardly_apart() -> None:
+    inputs = torch.randn(500, 30, generator=torch.Generator().manual_seed(0))
+    reach = torch.tensor([1.0] * 10 + [1e-3] * 20)
+    seen = visible(inputs * reach)
+    assert seen.tolist() == [True] * 10 + [False] * 20
+    whole, part = (inputs * reach) @ whitening(inputs * reach), inputs[:, seen] @ whitening(inputs[:, seen])
+    distances = (torch.cdist(some[:250], some[250:]) for some in (part, whole))
+    torch.testing.assert_close(*distances, rtol=1e-3, atol=0)
 
 
 def test_local_parts_carry_over_to_limbs_that_move_apart() -> None:

@@ -13,6 +13,7 @@ from mua.kernels.dq_skinning import blend_vertices
 from mua.pose.clip import Clip
 from mua.rig.bones import Bones, fit_bones
 from mua.rig.character import Character
+from mua.teachers.simulated.looseness import FIRM_LOOSENESS
 from mua.teachers.simulated.simulation import DEVICE, Simulation, gravity_beyond_rest, one_rings
 
 SINGLE = 32 * float(np.finfo(np.float32).eps)  # metres; sums of some ten terms of up to 2 m
@@ -58,6 +59,13 @@ def test_rigid_skin_follows_exactly() -> None:
     clip = swing(character)
     expected = np.stack([target for target, _ in skinned(character, clip)])
     np.testing.assert_allclose(play(character, clip), expected, atol=SINGLE)
+
+
+def test_what_hangs_next_to_nothing_follows_its_skin() -> None:
+    character = tube(looseness=FIRM_LOOSENESS)
+    clip = swing(character)
+    targets = [target for target, _ in skinned(character, clip)]
+    np.testing.assert_allclose(play(character, clip), targets, rtol=0, atol=SINGLE)
 
 
 def test_looser_surfaces_deviate_more() -> None:

@@ -8,7 +8,7 @@ import torch
 from scipy.spatial.distance import cdist
 
 from mua.training import smoother
-from mua.training.smoother import LEAST, RIDGE, WIDTH, fit_beyond, fit_smoother
+from mua.training.smoother import LEAST, RIDGE, WIDTH, Through, fit_beyond, fit_smoother
 
 
 def frames(count: int, dimensions: int = 4) -> tuple[torch.Tensor, torch.Tensor]:
@@ -138,4 +138,4 @@ def test_values_go_through_a_matrix() -> None:
     x, targets, own = users_and_range()
     function = fit_beyond(x, targets, own, beyond=10.0, generator=torch.Generator().manual_seed(1))
     matrix = torch.tensor([[1.0, 2.0, 0.0], [0.0, -1.0, 3.0]])
-    assert torch.allclose(function.through(matrix)(x), function(x) @ matrix, atol=1e-3)
+    assert torch.allclose(Through(function, matrix)(x), function(x) @ matrix, atol=1e-3)

@@ -140,7 +140,7 @@ def test_coefficients_of_smplx_move_one_of_each_pair(story: Story, folder: Path)
     named = replace(avatar.rig, expressions=replace(avatar.rig.expressions, names=names))
     write(folder / "smplx.muaavatar", replace(avatar, rig=named), storage="f16")
     coefficients = np.array([2.0, -4, 6, 0])
-    expected = as_weights("Exp000", coefficients) | as_weights("Exp001", -coefficients / 2)
+    expected = {**as_weights("Exp000", coefficients), **as_weights("Exp001", -coefficients / 2)}
     followed = np.array([numbers(line) for line in story("FollowsCoefficients", "smplx")["followed"]])
     np.testing.assert_allclose(followed, np.stack([expected[name] for name in names], axis=1), rtol=1e-6)
     assert followed.any(axis=0).all()

@@ -34,11 +34,11 @@ from mua.rig.texel_binding import bind_texels
 from mua.teachers.simulated.still import StillTeacher
 from mua.teachers.simulated.teacher import SimulatedTeacher
 from mua.teachers.simulated.texels import SurfaceTexels
-from mua.training.memory import release_memory
+from mua.training.memory import release_memory, return_large_blocks
 
 # Steps of the fit, and training frames for each further one: less than a tenth of the time of a bake.
 FEWEST_STEPS, FRAMES_OF_A_STEP = 40, 6
-FRAMES = "frames 2"  # raised where the stand-in teacher or the fit changes what it makes of the same input
+FRAMES = "frames 3"  # raised where the stand-in teacher or the fit changes what it makes of the same input
 FITTED = b"fitted"  # part of the key of a fit and of the recording that it corrects, which have one name
 
 
@@ -47,6 +47,7 @@ def bake(settings: BakeSettings, listener: Listener) -> Baked:
 
     Raises InputError for anything that cannot be used, and where another process is at work in the work directory.
     """
+    return_large_blocks()
     device = choose_device(settings.device)
     for directory in check_output(settings.output, settings.work):
         listener.note(f"There is no directory {directory}; it is created.")
@@ -81,6 +82,7 @@ def _bake(settings: BakeSettings, device: torch.device, listener: Listener) -> B
     character = replace(character, source=None)  # its textures may be large
     release_memory()
     recording = _record(settings, character, laid, planned, listener, fitted=corrections is not None)
+    del laid
     release_memory()
     distillation = Distillation(
         output=settings.output,
@@ -159,13 +161,15 @@ def _record(
     planned: list[PlannedClip],
     listener: Listener,
     *,
-    fitted: bool,
+    fitted: bool,  # whether the splats were corrected by images of the source
 ) -> Recording:
     """The stand-in teacher's recording."""
     texels, seed = settings.student.texels, settings.student.seed
     for sentence in bind_texels(character, make_template(character), size=texels).notes:
         listener.note(sentence)
     bare = replace(character, clips=())
+    if laid is not None:  # which have their colours: processes need no texture of perhaps 100 MB
+        bare = replace(bare, base_color=character.base_color[:1, :1])
     lit_in = usual_poses(planned)
     teacher = partial(SimulatedTeacher, bare, texels=texels, laid=laid, lit_in=lit_in, seed=seed)
     key = recording_key([*parts(settings, character), *([FITTED] if fitted else [])], planned)

@@ -71,7 +71,7 @@ def check_range(
     size: int,
 ) -> None:
     """Raise InputError for the first value that is not finite, or too far from the reference for half precision."""
-    if np.abs(difference).max(initial=0) <= HALF_MAX:  # also false for nan
+    if difference.max(initial=0) <= HALF_MAX and difference.min(initial=0) >= -HALF_MAX:  # also false for nan
         return
     texel, channel = np.argwhere(~(np.abs(difference) <= HALF_MAX))[0]
     row, column = divmod(int(texels[texel]), size)

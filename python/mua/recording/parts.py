@@ -139,10 +139,11 @@ def record_part(
     reference: Callable[[], Array],  # the texture that all parts refer to; called when a part begins
     rate: float,
     shard_frames: int = 32,
+    durable: bool = True,  # not needed where damage by a loss of power is found before a part is taken up again
     progress: Callable[[int], None] = lambda done: None,
 ) -> None:
     """Record a part, going on where an earlier run stopped."""
-    with TeacherWriter(directory, teacher.rig, rate=rate, shard_frames=shard_frames) as own:
+    with TeacherWriter(directory, teacher.rig, rate=rate, shard_frames=shard_frames, durable=durable) as own:
         if not own.has_reference:
             own.refer_to(reference())
         record(teacher, clips, own, progress=progress)

@@ -19,10 +19,11 @@ from mua.recording.layout import INDEX, Header, Index, Segment, shard_name, to_j
 class Shard:
     """Frames gathered in memory; those kept whole go to the shard's hidden directory at once, being large."""
 
-    def __init__(self, shards: Path, number: int, header: Header) -> None:
+    def __init__(self, shards: Path, number: int, header: Header, *, durable: bool) -> None:
         self._final = shards / shard_name(number)
         self._part = shards / f".{shard_name(number)}.part"
-        self._header = header
+        self._header, self._durable = header, durable
+        self._crc: dict[str, int] = {}
         self.complete: list[str] = []  # clips that end here
         self._segments: list[Segment] = []
         self._rotations: list[Array] = []
@@ -73,22 +74,27 @@ class Shard:
         *,
         training_frames: int,  # frames in the sum
     ) -> None:
-        """Write the hidden directory, sync it and rename it; raises InputError where the system refuses."""
+        """Write the hidden directory, sync it if it is to be durable, and rename it.
+
+        Raises InputError where the system refuses.
+        """
         with self._writing():
             for name, array in {**self._arrays(), "sum": total}.items():
                 self._save(name, array)
-            crc = {path.name: zlib.crc32(path.read_bytes()) for path in sorted(self._part.glob("*.npy"))}
-            index = Index(self._segments, self.complete, training_frames, crc, self._header.rig)
+            index = Index(self._segments, self.complete, training_frames, self._crc, self._header.rig)
             (self._part / INDEX).write_bytes(to_json(index))
-            for path in (*self._part.iterdir(), self._part):
-                sync(path)
+            if self._durable:
+                for path in (*self._part.iterdir(), self._part):
+                    sync(path)
             self._part.rename(self._final)
-        sync(self._final.parent)
+        if self._durable:
+            sync(self._final.parent)
 
     def _save(self, name: str, array: Array) -> None:
         content = io.BytesIO()  # np.save into a file does not notice where a full disk loses the last bytes
         np.save(content, array, allow_pickle=False)
         path = self._part / f"{name}.npy"
+        self._crc[path.name] = zlib.crc32(content.getbuffer())
         try:
             path.write_bytes(content.getbuffer())
         except OSError as error:

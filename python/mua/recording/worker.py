@@ -47,6 +47,7 @@ def _record(asked: "queue.Queue[Any]", answers: IO[bytes]) -> None:
             part_directory(job.directory, part, len(parts)),
             reference=reference,
             rate=job.rate,
+            durable=False,
             progress=lambda done: _send(answers, RECORDED, done),
         )
         _send(answers, ENDED, part)

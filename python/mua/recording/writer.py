@@ -47,7 +47,7 @@ from mua.recording.plausible import Finding, LikelyMistake, Plausible, rig_findi
 from mua.recording.rig_file import write_rig
 from mua.recording.shard import Shard
 from mua.rig.rig import Rig
-from mua.texture.fill import Fill
+from mua.texture.fill import fill_of
 
 POSES_PER_SHARD = 4096  # a shard ends here at the latest, however few of its frames are recorded
 ROTATIONS = ", unit quaternions wxyz; from_axis_angle and from_matrix of mua.rotation make them"
@@ -85,6 +85,7 @@ class TeacherWriter:
         wavelet: str = WAVELET,
         whole_every: int = 50,  # one of this many recorded frames of a clip is kept whole
         shard_frames: int = 32,  # recorded frames of a shard, the most that a kill loses
+        durable: bool = True,  # whether a finished shard survives a loss of power; syncing waits for the disk
     ) -> None:
         """Open `directory` to go on with its recording, or to begin one.
 
@@ -114,8 +115,8 @@ class TeacherWriter:
         self.rate = float(rate)
         self._header = Header.of(rig, rate=rate, wavelet=wavelet)
         self._texels = rig.texels
-        self._whole_every, self._shard_frames = whole_every, shard_frames
-        self._fill = Fill(rig.texels)
+        self._whole_every, self._shard_frames, self._durable = whole_every, shard_frames, durable
+        self._fill = fill_of(rig.texels)
         self._reference: Reference | None = None
         self._clips: dict[str, _ClipState] = {}
         self._clip = ""
@@ -317,7 +318,7 @@ class TeacherWriter:
 
     def _begin_shard(self, number: int) -> None:
         self._number = number
-        self._shard = Shard(self.directory / SHARDS, number, self._header)
+        self._shard = Shard(self.directory / SHARDS, number, self._header, durable=self._durable)
         if number > 1:  # only the last shard's running sum is used; a kill may have left the one before it
             (self.directory / SHARDS / shard_name(number - 2) / SUM).unlink(missing_ok=True)
 

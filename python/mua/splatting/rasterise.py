@@ -113,7 +113,8 @@ class _Draw(torch.autograd.Function):
             _launch(kernels.backward, part, [shapes, colors, left, ends, gradient, by_shapes, by_colors])
             return by_shapes, by_colors
 
-        by_shapes, by_colors = map(sum, zip(*_by_parts(context.tiles, added, context.threads), strict=True))
+        shares = zip(*_by_parts(context.tiles, added, context.threads), strict=True)
+        by_shapes, by_colors = (torch.stack(own).sum(dim=0) for own in shares)
         return by_shapes, by_colors, None, None
 
 

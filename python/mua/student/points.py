@@ -15,6 +15,7 @@ from mua.student.settings import Generalisation
 FARTHEST = 16.0  # factor of a point's own distance from the mean
 BLEND = 0.5  # points lie up to this far on the way to a frame
 CLOSE = 0.05  # noise of points close to frames, in spreads of each direction
+AT_ONCE = 1 << 12  # points: several copies of theirs are in memory while they are drawn
 RADII = 4  # a random joint is exchanged with those within a random radius of fewer than this many joints
 
 
@@ -28,7 +29,22 @@ def draw_points(
     generator: torch.Generator,
 ) -> Tensor:
     """Random points [count, K]: frames, some with a part of another, moved towards a third, and noise; some far out."""
+    points = inputs.new_empty(count, len(components))
     z = components(inputs)
+    for some in points.split(AT_ONCE):
+        some.copy_(_draw(inputs, z, components, len(some), steps, generalisation, generator))
+    return points
+
+
+def _draw(
+    inputs: Tensor,  # [F, D]
+    z: Tensor,  # [F, K] their components
+    components: Components,
+    count: int,
+    steps: Tensor | None,
+    generalisation: Generalisation,
+    generator: torch.Generator,
+) -> Tensor:
     exchanged = 0 if steps is None else round(generalisation.exchanged * count)
     around = scatter(pick(z, count - exchanged, generator=generator), z, generalisation.noise, generator=generator)
     if steps is not None and exchanged:

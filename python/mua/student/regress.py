@@ -18,12 +18,14 @@ from mua.student.settings import Generalisation
 from mua.training.optimise import Run, optimise
 from mua.training.processes import Share
 from mua.training.schedule import Schedule
-from mua.training.smoother import RIDGE, Smooth, Sum, fit_beyond, fit_smoother
+from mua.training.smoother import RIDGE, Smooth, Sum, Through, fit_beyond, fit_smoother
 
 # Chosen on held-out walks and turns.
 FIRST_LAYER = 0.3  # scale of the first layer's weights at the start: small ones make smooth functions
 VISITS = 32  # uses of each point; the function's values there are computed once
 POINTS_AT_ONCE = 1 << 9
+UNSHARED = 1e-4  # share of a direction that a part leaves to the others
+UNSEEN = 1e-5  # share of the spread in the columns of the descriptor that a part does not look at
 FORGONE = 1e-4  # share of the spread of a part's view of the descriptors
 GENERALISATION = Generalisation()
 
@@ -131,20 +133,36 @@ def fit_local(
     """The smooth function of components through `goal`; with `locality` a sum over parts with views of their own."""
     z, back = components(inputs), components.back()
 
-    def through(x: Tensor) -> Smooth:
+    sizes = goal.norm(dim=1)
+
+    def through(x: Tensor, goal: Tensor) -> Smooth:
         if own is None:
             return fit_smoother(x, goal, generator=generator, noise=fit.own)
-        return fit_beyond(x, goal, own, beyond=fit.beyond, ridge=fit.own, fades=fit.fades, generator=generator)
+        return fit_beyond(
+            x, goal, own, beyond=fit.beyond, ridge=fit.own, fades=fit.fades, sizes=sizes, generator=generator
+        )
 
     if locality is None:
-        return through(z)
+        return through(z, goal)
     turns, terms = [], []
     for reach, share in zip(locality.reach, locality.shares, strict=True):
-        turn = (back * reach) @ whitening(inputs * reach)
+        seen = visible(inputs * reach)
+        turn = (back * reach)[:, seen] @ whitening((inputs * reach)[:, seen])
         turn = turn[:, leading(z @ turn)]
         turns.append(turn)
-        terms.append(through(z @ turn).through(share))
+        narrow, wide = factors(share)
+        terms.append(Through(through(z @ turn, goal @ narrow), wide))
     return Sum(tuple(terms), tuple(turns))
+
+
+def factors(
+    share: Tensor,  # [K, K] symmetric, eigenvalues in 0..1
+) -> tuple[Tensor, Tensor]:
+    """Matrices [K, R] and [R, K] whose product is `share`: a part's samples vary in few of the K directions."""
+    values, vectors = torch.linalg.eigh(share.double())
+    held = values >= values[-1].clamp(max=UNSHARED)
+    some = vectors[:, held]
+    return (some * values[held]).to(share), some.T.to(share)
 
 
 def whitening(
@@ -160,13 +178,27 @@ def whitening(
     return (directions / (variance.clamp(min=0) + INPUT_FLOOR).sqrt()).to(inputs)
 
 
+def visible(
+    inputs: Tensor,  # [F, D] as a part sees them
+) -> Tensor:
+    """Columns [D], bool, without those of distant joints that add next to nothing to the distances between frames."""
+    variance = inputs.var(0, correction=0)
+    return _largest(variance, UNSEEN * (variance / (variance + INPUT_FLOOR)).sum() * INPUT_FLOOR)
+
+
 def leading(
     z: Tensor,  # [F, D]
 ) -> Tensor:
     """Columns [D], bool, that hold nearly all variance between frames, which makes distances several times cheaper."""
-    spread, order = z.var(0, correction=0).sort()
+    spread = z.var(0, correction=0)
+    return _largest(spread, FORGONE * spread.sum())
+
+
+def _largest(spread: Tensor, forgone: Tensor) -> Tensor:
+    """Which numbers [D] are left if the smallest are dropped whose sum is at most `forgone`."""
+    ascending, order = spread.sort()
     held = torch.empty_like(order, dtype=torch.bool)
-    held[order] = spread.cumsum(0) > FORGONE * spread.sum()
+    held[order] = ascending.cumsum(0) > forgone
     return held
 
 

@@ -41,9 +41,9 @@ class SurfelStretch:
         strain: Array,  # [6, N] of the surface at the texels, as mua.texture.surfels.SurfaceFrames measures it
     ) -> Array:
         """Logarithms [2, N] of the lengths of x and y over those at rest."""
-        a, b, c = vertices[self._faces].swapaxes(0, 1)
+        a, b, c = np.ascontiguousarray(vertices.T)[:, self._faces.T].swapaxes(0, 1)  # [3, F] each
         e, f = b - a, c - a
-        metric = np.stack([np.sum(p * q, axis=1) for p, q in ((e, e), (f, f), (e, f))])[:, self._triangles]
+        metric = np.stack([np.sum(p * q, axis=0) for p, q in ((e, e), (f, f), (e, f))])[:, self._triangles]
         logs = []
         for axes, coordinates in zip(self._axes, self._coordinates, strict=True):
             own = _log_length(np.einsum("kn,kn->n", coordinates, metric))

@@ -122,35 +122,44 @@ class SurfaceFrames:
         sqrt(1 + x . strain x). Its components are xx, yy, zz, xy, xz, yz.
         """
         frames, metric = self._measure(vertices)
-        turn = np.einsum("vik,vjk->vij", frames, self._rest)
-        tt, tb, bb = (metric - self._rest_metric).T
+        turn = np.einsum("kiv,kjv->ijv", frames, self._rest)
+        tt, tb, bb = metric - self._rest_metric
         strain = [tt * p * q + tb * r + bb * s * u for (p, q), (s, u), r in self._products]
-        return rotation.from_matrix(turn), np.stack(strain, axis=1)
+        return rotation.from_matrix(np.moveaxis(turn, 2, 0)), np.stack(strain, axis=1)
 
     def squeeze(
         self,
         vertices: Array,  # [V, 3] deformed
     ) -> Array:
         """How much shorter the surface is in its most compressed direction [V]: minus the log of length, >= 0."""
-        t, b = np.asarray(self._tangents @ vertices).reshape(2, -1, 3)
-        tt, bb, tb = (np.einsum("vc,vc->v", p, q) for p, q in ((t, t), (b, b), (t, b)))
-        least = (tt + bb) / 2 - np.hypot((tt - bb) / 2, tb)  # eigenvalue of the metric, 1 at rest
+        t, b = self._carried(vertices)
+        tt, bb, tb = (np.sum(p * q, axis=0) for p, q in ((t, t), (b, b), (t, b)))
+        least = (tt + bb) / 2 - np.sqrt(((tt - bb) / 2) ** 2 + tb**2)  # eigenvalue of the metric, 1 at rest
         return np.maximum(-0.5 * np.log(np.maximum(least, 1e-6)), 0)
 
+    def _carried(self, vertices: Array) -> Array:
+        """The two tangents [2, 3, V] carried along, a plane for each component."""
+        return np.asarray(self._tangents @ vertices).reshape(2, -1, 3).transpose(0, 2, 1).copy()
+
     def _measure(self, vertices: Array) -> tuple[Array, Array]:
-        """Frames [V, 3, 3], columns x, y, z, and products [V, 3] of the two unit tangents carried along.
+        """Axes x, y, z [3, 3, V], and products [3, V] of the two unit tangents carried along.
 
         Of all frames about the normal, the one nearest to both carried tangents (polar decomposition in the plane).
         """
-        t, b = np.asarray(self._tangents @ vertices).reshape(2, -1, 3)
-        across = np.cross(t, b)
-        area = np.maximum(np.linalg.norm(across, axis=1), 1e-12)
-        z = across / area[:, None]
-        x = t + np.cross(b, z)
-        x -= z * np.sum(x * z, axis=1, keepdims=True)
-        x /= np.maximum(np.linalg.norm(x, axis=1, keepdims=True), 1e-12)
-        metric = np.stack([np.sum(p * q, axis=1) for p, q in ((t, t), (t, b), (b, b))], axis=1)
-        return np.stack([x, np.cross(z, x), z], axis=2), metric
+        t, b = self._carried(vertices)
+        across = _cross(t, b)
+        z = across / np.maximum(np.sqrt(np.sum(across * across, axis=0)), 1e-12)
+        x = t + _cross(b, z)
+        x -= z * np.sum(x * z, axis=0)
+        x /= np.maximum(np.sqrt(np.sum(x * x, axis=0)), 1e-12)
+        metric = np.stack([np.sum(p * q, axis=0) for p, q in ((t, t), (t, b), (b, b))])
+        return np.stack([x, _cross(z, x), z]), metric
+
+
+def _cross(a: Array, b: Array) -> Array:
+    """Cross products of vectors as planes [3, V]."""
+    (ax, ay, az), (bx, by, bz) = a, b
+    return np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
 
 
 def align_neighbours(

@@ -27,9 +27,6 @@ class Smooth(Protocol):
     def __call__(self, x: Tensor) -> Tensor:
         """The values [F, K]."""
 
-    def through(self, matrix: Tensor) -> "Smooth":
-        """The function with its values multiplied by a matrix [K, K']."""
-
 
 @dataclass(frozen=True, eq=False)
 class Smoother:
@@ -41,12 +38,16 @@ class Smoother:
     reach: float = math.inf  # squared distance from the nearest centre at which the function has faded to 1 / e
 
     def __call__(self, x: Tensor) -> Tensor:
-        squared = torch.cdist(x, self.centres).square_()
-        trust = (-squared.min(1).values / self.reach).exp_()
-        return trust[:, None] * (squared.div_(-self.width).exp_() @ self.values)
+        return self.at(_exponents(x, self.centres, self.width))
 
-    def through(self, matrix: Tensor) -> "Smoother":
-        return replace(self, values=self.values @ matrix)
+    def at(
+        self,
+        exponents: Tensor,  # [F, M] of the kernel; overwritten
+    ) -> Tensor:
+        """The values [F, K] at points that are so far from the centres."""
+        trust = None if math.isinf(self.reach) else (exponents.amax(1) * (self.width / self.reach)).exp_()
+        values = exponents.exp_() @ self.values
+        return values if trust is None else values.mul_(trust[:, None])
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,8 +59,30 @@ class Constant:
     def __call__(self, x: Tensor) -> Tensor:
         return self.values.repeat(len(x), 1)
 
-    def through(self, matrix: Tensor) -> "Constant":
-        return Constant(self.values @ matrix)
+
+@dataclass(frozen=True, eq=False)
+class Through:
+    """A function whose values are multiplied by a matrix."""
+
+    function: Smooth
+    matrix: Tensor  # [K, K']
+
+    def __call__(self, x: Tensor) -> Tensor:
+        return self.function(x) @ self.matrix
+
+
+@dataclass(frozen=True, eq=False)
+class Nested:
+    """The sum of a function and a narrower one that fades; distances are computed for both at once."""
+
+    wide: Smoother
+    narrow: Smoother  # its centres are the first of the wide one's
+
+    def __call__(self, x: Tensor) -> Tensor:
+        wide, narrow = self.wide, self.narrow
+        exponents = _exponents(x, wide.centres, wide.width)
+        nearer = exponents[:, : len(narrow.centres)] * (wide.width / narrow.width)
+        return wide.at(exponents).add_(narrow.at(nearer))
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,9 +96,6 @@ class Sum:
         turns = self.turns or (None,) * len(self.terms)
         parts = (term(x if turn is None else x @ turn) for term, turn in zip(self.terms, turns, strict=True))
         return functools.reduce(Tensor.add_, parts)
-
-    def through(self, matrix: Tensor) -> "Sum":
-        return replace(self, terms=tuple(term.through(matrix) for term in self.terms))
 
 
 def fit_smoother(
@@ -93,8 +113,8 @@ def fit_smoother(
     width = width or WIDTH * spread(x) or 1.0
     kernel = _kernel(centres, centres, width).double()
     if len(centres) == len(x):  # no approximation
-        system = kernel + torch.diag(noise[chosen].double())
-        solved = torch.cholesky_solve(targets[chosen].double(), torch.linalg.cholesky(system))
+        kernel.diagonal().add_(noise[chosen])
+        solved = torch.cholesky_solve(targets[chosen].double(), torch.linalg.cholesky(kernel))
         return Smoother(centres, solved.to(targets), width)
     values, vectors = torch.linalg.eigh(kernel)
     kept = values > RANK_FLOOR * values[-1]
@@ -115,13 +135,16 @@ def fit_beyond(
     generator: torch.Generator,
     ridge: float = RIDGE,  # noise variance of what the user's frames show besides
     fades: bool = True,  # whether it fades to the mean of the frames that are not the user's
+    sizes: Tensor | None = None,  # [F] lengths of values that the targets are a part of; None: of the targets
 ) -> Sum:
     """A heavily smoothed function of all frames, plus the residual of the user's frames, which fades away from them.
 
     Far from all frames it is 0, the mean of the user's, or where `fades` is given the mean of the others: the mean of a
     walk is less like other motion. Where no frame is the user's, it is the smoothed function alone.
     """
-    size = targets.norm(dim=1)
+    order = torch.argsort(own.int(), descending=True, stable=True)  # the user's first, as `Nested` has them
+    x, targets, own = x[order], targets[order], own[order]
+    size = targets.norm(dim=1) if sizes is None else sizes[order]
     relative = size / size[~own].square().mean().sqrt().clamp(min=torch.finfo(size.dtype).tiny)
     others = targets[~own] if fades else torch.zeros_like(targets[:1])
     mean = Constant(others.mean(0))
@@ -132,7 +155,8 @@ def fit_beyond(
     reach = spread(x[own]) or 1.0
     width = math.sqrt(around.width * WIDTH * reach)  # wide, yet not so wide that small motion is flat within it
     besides = fit_smoother(x[own], targets[own] - common(x[own]), generator=generator, noise=ridge, width=width)
-    return Sum((*common.terms, replace(besides, reach=reach)))
+    besides = replace(besides, reach=reach)
+    return Sum((mean, Nested(around, besides) if len(x) <= CENTRES else Sum((around, besides))))
 
 
 def spread(x: Tensor) -> float:
@@ -141,4 +165,11 @@ def spread(x: Tensor) -> float:
 
 
 def _kernel(a: Tensor, b: Tensor, width: float) -> Tensor:
-    return torch.cdist(a, b).square_().div_(-width).exp_()  # in place, as most of a regression's time goes here
+    return _exponents(a, b, width).exp_()
+
+
+def _exponents(a: Tensor, b: Tensor, width: float) -> Tensor:
+    """The exponents -|a - b|^2 / width [A, B] in one product, as most of a regression's time goes here."""
+    left = torch.cat([a, a.square().sum(1, keepdim=True), torch.ones_like(a[:, :1])], dim=1)
+    right = torch.cat([2 * b, -torch.ones_like(b[:, :1]), -b.square().sum(1, keepdim=True)], dim=1)
+    return (left @ (right / width).T).clamp_(max=0)

@@ -18,7 +18,7 @@ class SurfaceMaps:
         """Raises InputError where no texel centre of `size` x `size` lies on the surface."""
         texels = build_texel_map(rig.mesh, size)
         self.size = size
-        self._fill = Fill(texels, device)
+        self._fill = Fill(texels)
         self._faces = torch.as_tensor(rig.mesh.faces, dtype=torch.long, device=device)
         self._corners = self._faces[torch.as_tensor(texels.triangles, dtype=torch.long, device=device)]
         self._barycentrics = torch.as_tensor(texels.barycentrics, dtype=torch.float32, device=device)
@@ -31,7 +31,7 @@ class SurfaceMaps:
         both = torch.cat([posed, vertex_normals(posed, self._faces)], dim=2)
         at_texels = torch.einsum("nk,fnkc->nfc", self._barycentrics, both[:, self._corners])
         at_texels[..., 3:] = functional.normalize(at_texels[..., 3:], dim=-1)
-        images: Tensor = self._fill(at_texels.flatten(1))
+        images = self._fill(at_texels.flatten(1).cpu()).to(posed.device)
         return images.unflatten(0, (len(posed), CHANNELS))
 
 

@@ -47,10 +47,12 @@ def occlude(
         axis = ends[c, 1] - start
         along = wp.dot(point - start, axis) / wp.max(wp.dot(axis, axis), 1.0e-12)
         towards = start + axis * wp.clamp(along, 0.0, 1.0) - point
-        distance = wp.max(wp.length(towards), 1.0e-9)
-        facing = wp.max(wp.dot(normals[i], towards) / distance, 0.0)
-        near = radii[c] / wp.max(distance, radii[c])
-        left = left * (1.0 - shadow * facing * facing * near * near)
+        ahead = wp.dot(normals[i], towards)
+        if ahead > 0.0:
+            distance = wp.max(wp.length(towards), 1.0e-9)
+            facing = ahead / distance
+            near = radii[c] / wp.max(distance, radii[c])
+            left = left * (1.0 - shadow * facing * facing * near * near)
     visible[i] = left
 
 
@@ -82,4 +84,5 @@ def shade(
     sky = GROUND_COLOR + (SKY_COLOR - GROUND_COLOR) * upward[:, None]
     light = visible[:, None] * (sky + LAMP_COLOR * lit[:, None])
     mirrored = 2 * slant[:, None] * normals - lamp  # seen brightest when looking against it
-    return Light(gain=light ** (1 / DISPLAY_GAMMA), sheen=-SHEEN * (visible * lit)[:, None] * mirrored)
+    gain = light.astype(np.float32) ** np.float32(1 / DISPLAY_GAMMA)  # several times as fast as in double precision
+    return Light(gain=gain, sheen=-SHEEN * (visible * lit)[:, None] * mirrored)

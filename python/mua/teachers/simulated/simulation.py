@@ -32,6 +32,7 @@ DRAG = 0.6  # 1 / s, of the air on cloth
 GRAVITY = 9.81
 STRETCH = 0.5  # share of an edge's error that an iteration takes out where looseness is 1
 SLACK = 0.3  # share of that for an edge shorter than at rest: cloth folds before it shortens
+LEAST_SAG = 2e-5  # metres on a person: what hangs less is rigid, as heads and hands are, where most vertices lie
 BENDING = 0.5  # m^2 / s^2: (length over which displacements even out x frequency of the spring)^2
 SHORTEST_EDGE = 1e-4  # metres on a person
 LOOSE = 0.5  # cloth above this looseness collides with the bones
@@ -131,6 +132,7 @@ class Simulation:
         bones: Bones,
     ) -> None:
         self._scale = figure_scale(vertices)
+        looseness = np.where(GRAVITY / spring_frequency(looseness) ** 2 < LEAST_SAG, 0, looseness)
         starts, neighbours = one_rings(faces, len(vertices))
         own = np.repeat(np.arange(len(vertices)), np.diff(starts))
         lengths = np.maximum(np.linalg.norm(vertices[neighbours] - vertices[own], axis=1), SHORTEST_EDGE * self._scale)
@@ -141,8 +143,7 @@ class Simulation:
         evening = _within_limit(evening, own, room=1 - np.bincount(own, shares, len(vertices)))
         self._rings = _ints(starts), _ints(neighbours), _floats(evening)
         self._constraints = _constraints(starts, neighbours, lengths, shares, evening, looseness)
-        softness = np.maximum(looseness, 1e-3)
-        self._frequency = _floats(2 * np.pi * CLOTH_FREQUENCY / softness**FIRMING)
+        self._frequency = _floats(spring_frequency(looseness))
         self._drag, self._looseness = _floats(DRAG * looseness), _floats(looseness)
         loose = np.flatnonzero(looseness > LOOSE)
         at_rest = capsule_distance(vertices[loose][:, None], bones.ends[:, 0], bones.ends[:, 1])
@@ -261,6 +262,11 @@ def _within_limit(evening: Array, own: Array, *, room: Array) -> Array:
     """
     total = np.bincount(own, evening, len(room))
     return np.asarray(evening * np.minimum(1, room / np.maximum(total, np.finfo(float).tiny))[own])
+
+
+def spring_frequency(looseness: Array) -> Array:
+    """Radians per second [V] of the springs that hold vertices at their skinned positions."""
+    return np.asarray(2 * np.pi * CLOTH_FREQUENCY / np.maximum(looseness, 1e-3) ** FIRMING)
 
 
 def gravity_beyond_rest(
