@@ -1,10 +1,12 @@
 """Boxes around posed avatars, from the skinned template: no texel needs to be decoded for them."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from functools import partial
 
 import numpy as np
 
 from mua.arrays import Array
+from mua.kernels.dq_skinning import blend_vertices
 from mua.pose.clip import Clip
 from mua.rig.rig import Rig
 from mua.rig.skinning import Skinning, transform
@@ -15,15 +17,22 @@ MARGIN = 0.06  # share of the figure's size by which cloth may leave the skinned
 
 def playback_bounds(rig: Rig, clips: Iterable[Clip]) -> Array:
     """Lowest and highest corner [2, 3] float32 of all frames of all clips about the root joint's position, metres."""
-    boxes = [frame_boxes(rig, clip) - root_positions(rig, clip)[:, None] for clip in clips]
+    skinning = Skinning(rig.skin_indices, rig.skin_weights)
+    boxes = [frame_boxes(rig, clip, blend=skinning) - root_positions(rig, clip)[:, None] for clip in clips]
     return union(np.concatenate(boxes)).astype(np.float32)
 
 
-def frame_boxes(rig: Rig, clip: Clip) -> Array:
+def frame_boxes(
+    rig: Rig,
+    clip: Clip,
+    *,
+    blend: Callable[[Array], Array] | None = None,  # from joints [J, 8] to vertices [V, 8]; None: as the kernel does
+) -> Array:
     """Lowest and highest corner [F, 2, 3] of every frame of a clip in the world, metres."""
-    boxes, around, skinning = [], margin(rig), Skinning(rig.skin_indices, rig.skin_weights)
+    blend = blend or partial(blend_vertices, indices=rig.skin_indices, weights=rig.skin_weights)
+    boxes, around = [], margin(rig)
     for frame, joints in enumerate(rig.skeleton.skinning(clip.rotations, clip.translations)):
-        dual = skinning(joints)
+        dual = blend(joints)
         shape = rig.mesh.vertices
         if clip.stretches is not None:
             shape = stretched(rig, clip.stretches, frame, shape)
