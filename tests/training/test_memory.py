@@ -18,7 +18,7 @@ def used() -> int:
     return int(line.split()[1]) * 1024
 
 
-@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="needs Linux, which says what a process uses")
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="needs Linux, whose /proc says what a process uses")
 def test_freed_blocks_below_one_in_use_are_given_back() -> None:
     blocks = [np.ones(BYTES, np.uint8) for _ in range(BLOCKS)]
     last = np.ones(BYTES, np.uint8)  # above them in memory: the C library alone gives back no more than the top
@@ -45,7 +45,7 @@ print(used() - start)
 """
 
 
-@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="needs Linux, which says what a process uses")
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="needs Linux, whose /proc says what a process uses")
 def test_small_blocks_in_use_do_not_take_the_place_of_large_ones() -> None:
     """In processes of their own, because the setting is one of the process."""
     left = {}
