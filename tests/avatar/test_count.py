@@ -1,11 +1,13 @@
 """Counts against the paper's published figures and against a count by hand."""
 
+from dataclasses import replace
+
 from synthetic_avatar import synthetic_avatar
 
 from mua.asset.count import flops, parameters
 from mua.pose.encoding import PoseEncoding
 from mua.student.outline import Body, Outline, outline
-from mua.student.settings import preset
+from mua.student.settings import PAPER_SIZES, preset
 
 PAPER_PARAMETERS = 26.67e6  # paper, Tab. Comparison
 PAPER_FLOPS = 0.52e9
@@ -17,7 +19,8 @@ PAPER_VERTICES = 5_514  # template of the family's released character
 
 def paper_avatar() -> Outline:
     descriptor = PoseEncoding(joints=tuple(range(1, 54)), rate=25).width
-    return outline(preset("paper"), Body(descriptor, PAPER_INPUTS, PAPER_VERTICES, PAPER_TEXELS, PAPER_WAVELET))
+    settings = replace(preset("paper"), **vars(PAPER_SIZES))
+    return outline(settings, Body(descriptor, PAPER_INPUTS, PAPER_VERTICES, PAPER_TEXELS, PAPER_WAVELET))
 
 
 def test_paper_setting_costs_no_more_than_published() -> None:

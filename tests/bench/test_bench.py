@@ -113,12 +113,12 @@ def test_second_pass_of_nothing_visible_moves_totals_alone() -> None:
     assert [cost(d, share=0).bytes for d in passes] == [0, 4 * 256, 4 * 256]
 
 
-def test_random_avatar_has_the_papers_shapes() -> None:
+def test_random_avatar_has_the_shapes_of_its_preset() -> None:
     avatar = random_avatar(preset("paper"))
-    assert avatar.geometry.ll_basis.shape == (11, 192, 48, 48)
-    assert avatar.appearance.ranks == (128, 128, 96)
-    assert avatar.geometry.details[1].h.shape == (3, 11, 96, 96)
-    assert avatar.coarse.basis.shape == (128, 5508, 3)
+    assert avatar.geometry.ll_basis.shape == (11, 24, 48, 48)
+    assert avatar.appearance.ranks == (64, 256, 64)
+    assert avatar.geometry.details[1].h.shape == (3, 11, 16, 96)
+    assert avatar.coarse.basis.shape == (72, 5508, 3)
     assert abs(len(avatar.rig.texels.texels) - PAPER_TEXELS) < 1000
     assert avatar.rig.texels.claimed_twice == 0
     assert (len(avatar.encoding.joints), avatar.encoding.rate, len(avatar.clips[0])) == (53, 25, 50)

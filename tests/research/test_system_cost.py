@@ -1,11 +1,13 @@
 """What a compared system costs at the setting of the paper equals sums by hand."""
 
+from dataclasses import replace
+
 import pytest
 import torch
 
 from mua.bench.random_avatar import ENCODING
 from mua.filters import WAVELET
-from mua.student.settings import preset
+from mua.student.settings import PAPER_SIZES, preset
 from mua_research.system import Sizes
 from mua_research.systems import SYSTEMS
 
@@ -69,7 +71,8 @@ def by_hand(name: str) -> tuple[int, int]:
 
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_costs_at_the_paper_setting_equal_sums_by_hand(name: str) -> None:
-    sizes = Sizes(preset("paper"), ENCODING, INPUTS, VERTICES, torch.arange(VALID), WAVELET)
+    settings = replace(preset("paper"), **vars(PAPER_SIZES))
+    sizes = Sizes(settings, ENCODING, INPUTS, VERTICES, torch.arange(VALID), WAVELET)
     system = SYSTEMS[name](sizes)
     mesh_size, mesh_cost = mlp_size(128)
     size, cost = by_hand(name)

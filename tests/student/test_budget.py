@@ -18,10 +18,10 @@ from mua.asset.write import encode
 from mua.bench.random_avatar import random_avatar
 from mua.errors import InputError
 from mua.recording import Recording
-from mua.student.budget import FRONTIER, Sizes, cost, within_budget
+from mua.student.budget import FRONTIER, cost, within_budget
 from mua.student.distil import body_of
 from mua.student.outline import Body
-from mua.student.settings import Budget, Settings, preset
+from mua.student.settings import Budget, Settings, Sizes, preset
 
 PERSON = Body(descriptor=1299, inputs=981, vertices=5508, texels=300_000)
 ROUNDING = 100 * float(np.finfo(np.float32).eps)  # of least squares on bases that hold all of a small recording

@@ -1,5 +1,7 @@
 """The student's sizes and mean texture; test_export.py and test_distil.py hold its forward pass against decode()."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import torch
@@ -8,7 +10,7 @@ from synthetic_student import random_student
 from mua.pose.descriptor import groups_of
 from mua.pose.encoding import PoseEncoding
 from mua.student.model import Student, build_mlp
-from mua.student.settings import PRESETS, Settings, preset
+from mua.student.settings import PAPER_SIZES, PRESETS, Settings, preset
 
 FLOAT32 = float(np.finfo(np.float32).eps)
 
@@ -43,7 +45,8 @@ def parameters(settings: Settings, *, vertices: int, texels: int, encoding: Pose
 def test_the_papers_setting_fits_the_papers_parameter_count() -> None:
     encoding = PoseEncoding(joints=tuple(range(1, 61)), rate=30.0)
     # 5,514 template vertices, 300 K splats (paper) and a skeleton of 60 encoded joints
-    assert parameters(preset("paper"), vertices=5514, texels=300_000, encoding=encoding) <= 26.67e6
+    settings = replace(preset("paper"), **vars(PAPER_SIZES))
+    assert parameters(settings, vertices=5514, texels=300_000, encoding=encoding) <= 26.67e6
 
 
 def test_mlps_have_two_hidden_layers() -> None:

@@ -10,8 +10,7 @@ import train_ranks
 from choose_ranks import costs
 from compared import SETTINGS, smooth_recording
 
-from mua.student.budget import Sizes
-from mua.student.settings import Ranks, preset
+from mua.student.settings import Ranks, Sizes, preset
 from mua.training.schedule import Schedule
 
 FEW, MORE = (Sizes(Ranks(rank, rank, rank), Ranks(rank, rank, rank), components=4, hidden=16) for rank in (1, 8))

@@ -29,7 +29,7 @@ from mua.recording import Recording
 from mua.student.factorize import separable_blendshapes, truncated_svd
 from mua.student.outline import Body, outline
 from mua.student.sensitivity import measure_sensitivities
-from mua.student.settings import Ranks, Settings, preset
+from mua.student.settings import PAPER_SIZES, Ranks, Settings, preset
 from mua.training.checkpoint import Checkpoints
 from mua.training.optimise import Run
 from mua.wavelets import Bands
@@ -40,7 +40,8 @@ PICTURES = 8
 SWEEPS = 3
 RANKS = (8, 16, 32, 64, 96, 128)  # that are tried
 BRANCHES = {"geometry": GEOMETRY, "appearance": APPEARANCE}
-PAPER = Body(ENCODING.width, 3 * (9 + 6 * len(ENCODING.joints)), RINGS * SPOKES, 300_000)  # as comparisons.md counts
+PAPER = replace(preset("paper"), **vars(PAPER_SIZES))
+BODY = Body(ENCODING.width, 3 * (9 + 6 * len(ENCODING.joints)), RINGS * SPOKES, 300_000)  # as comparisons.md counts
 KINDS = ("training", "held out")
 
 
@@ -81,7 +82,7 @@ def frontier(measured: Sequence[Errors]) -> Iterator[tuple[Settings, dict[Group,
 def gain(relative: dict[Group, np.ndarray], before: dict[Group, int], after: dict[Group, int]) -> float:
     """Error that a step removes for a share of what the paper's sizes cost, in parameters and operations."""
     removed = sum(relative[group][before[group]] - relative[group][after[group]] for group in before)
-    price = (costs(with_ranks(after)) - costs(with_ranks(before))) / costs(preset("paper"))
+    price = (costs(with_ranks(after)) - costs(with_ranks(before))) / costs(PAPER)
     return float(removed / price.sum())
 
 
@@ -92,7 +93,7 @@ def total(errors: Errors) -> np.ndarray:
 
 def costs(settings: Settings) -> np.ndarray:
     """Operations of a frame and parameters."""
-    student = outline(settings, PAPER)
+    student = outline(settings, BODY)
     spent = flops(student)
     return np.array([sum(spent.values()) - spent["components of the pose"], sum(parameters(student).values())])
 
@@ -101,7 +102,7 @@ def with_ranks(at: dict[Group, int]) -> Settings:
     geometry, appearance = (
         Ranks(*(RANKS[at[Group(branch, level)] - 1] for level in Bands._fields)) for branch in BRANCHES
     )
-    return replace(preset("paper"), geometry=geometry, appearance=appearance)
+    return replace(PAPER, geometry=geometry, appearance=appearance)
 
 
 def measure(recording: Recording) -> Errors:

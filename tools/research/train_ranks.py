@@ -27,11 +27,10 @@ from mua.recording import Recording, WholeFrame
 from mua.splatting.posing import TorchRig, pose_splats
 from mua.splatting.projection import Eye
 from mua.splatting.rasterise import rasterise
-from mua.student.budget import Sizes
 from mua.student.distil import describe_frames, prepare
 from mua.student.model import Student
 from mua.student.sensitivity import measure_sensitivities
-from mua.student.settings import PRESETS, Ranks, Settings, preset
+from mua.student.settings import MEASURED, PAPER_SIZES, PRESETS, Ranks, Settings, Sizes, preset
 from mua.student.source import hold
 from mua.student.stages import BRANCHES, fit_branch, mean_lowpass
 from mua.training.checkpoint import Checkpoints, run_key
@@ -39,7 +38,8 @@ from mua.training.optimise import Progress, Run
 from mua.wavelets import Bands
 
 POINTS = (
-    Sizes(PRESETS["paper"].geometry, PRESETS["paper"].appearance, components=128, hidden=384),
+    PAPER_SIZES,
+    MEASURED,
     Sizes(Ranks(64, 128, 64), Ranks(128, 128, 128), components=128, hidden=384),
     Sizes(Ranks(32, 64, 32), Ranks(96, 128, 64), components=128, hidden=384),
     Sizes(Ranks(32, 64, 8), Ranks(64, 128, 32), components=128, hidden=384),

@@ -1,12 +1,12 @@
 """Sizes of students on the measured frontier of error against cost, and the largest of them within a budget."""
 
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, replace
 
 from mua.asset.count import flops, parameters
 from mua.asset.tensors import Storage
 from mua.errors import InputError
 from mua.student.outline import Body, outline
-from mua.student.settings import Budget, Ranks, Settings
+from mua.student.settings import MEASURED, Budget, Ranks, Settings, Sizes
 
 # Bytes of a file beside what is learnt.
 TEXEL_BYTES = 17.5  # where a valid texel lies on the template, and its share of the surface
@@ -14,27 +14,17 @@ VERTEX_BYTES = 125  # a vertex of the template with its weights and triangles
 OTHER_BYTES = 50_000  # joints, thumbnail, names
 
 
-@dataclass(frozen=True)
-class Sizes:
-    """A point of the frontier."""
-
-    geometry: Ranks
-    appearance: Ranks
-    components: int
-    hidden: int
-
-
 # From docs/research/ranks.md; each costs more than the one before it, and its bases hold more.
 FRONTIER = (
     Sizes(Ranks(8, 8, 8), Ranks(16, 16, 8), components=32, hidden=128),
     Sizes(Ranks(8, 16, 8), Ranks(32, 32, 8), components=48, hidden=128),
     Sizes(Ranks(16, 16, 8), Ranks(32, 64, 16), components=64, hidden=192),
-    Sizes(Ranks(16, 32, 16), Ranks(64, 96, 32), components=96, hidden=256),
-    Sizes(Ranks(32, 64, 16), Ranks(64, 128, 64), components=96, hidden=256),
-    Sizes(Ranks(32, 64, 32), Ranks(96, 128, 64), components=128, hidden=384),
-    Sizes(Ranks(32, 96, 32), Ranks(96, 128, 96), components=128, hidden=384),
-    Sizes(Ranks(32, 96, 64), Ranks(128, 128, 96), components=128, hidden=384),
-    Sizes(Ranks(64, 128, 64), Ranks(128, 128, 128), components=128, hidden=384),
+    Sizes(Ranks(16, 32, 16), Ranks(48, 96, 32), components=72, hidden=192),
+    Sizes(Ranks(16, 64, 16), Ranks(48, 128, 64), components=72, hidden=192),
+    Sizes(Ranks(24, 64, 16), Ranks(64, 192, 64), components=72, hidden=192),
+    MEASURED,
+    Sizes(Ranks(32, 96, 32), Ranks(96, 256, 64), components=96, hidden=256),
+    Sizes(Ranks(64, 128, 64), Ranks(128, 256, 96), components=128, hidden=384),
 )
 
 

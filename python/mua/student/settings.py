@@ -24,6 +24,16 @@ class Ranks:
 
 
 @dataclass(frozen=True)
+class Sizes:
+    """What a student's parameters and operations follow from, beside its texels."""
+
+    geometry: Ranks
+    appearance: Ranks
+    components: int  # PCA components of the coarse mesh
+    hidden: int  # width of the two hidden layers of every MLP
+
+
+@dataclass(frozen=True)
 class Generalisation:
     """Options that improve unseen motion, measured in docs/research/unseen_motion.md."""
 
@@ -68,6 +78,10 @@ class Settings:
     budget: Budget = Budget()  # by which ranks, components and width are chosen anew (`mua.student.budget`)
 
 
+PAPER_SIZES = Sizes(Ranks(192, 128, 96), Ranks(128, 128, 96), components=128, hidden=384)  # its hidden layers: ours
+# Draws as well as PAPER_SIZES with bior4.4, for half the operations and parameters (docs/research/ranks.md).
+MEASURED = Sizes(Ranks(24, 96, 16), Ranks(64, 256, 64), components=72, hidden=192)
+
 PRESETS = {
     "tiny": Settings(
         texels=192,
@@ -84,22 +98,16 @@ PRESETS = {
     "preview": Settings(
         texels=384,
         frames=1500,
-        geometry=Ranks(192, 128, 96),
-        appearance=Ranks(128, 128, 96),
-        components=128,
-        hidden=384,
+        **vars(MEASURED),
         sweeps=15,
         regression=Schedule(steps=4000, batch=512, lr=2e-3, epochs=3000),
-        finetune=Schedule(steps=1000, batch=16, lr=5e-4, warm_up=0.1, epochs=20),
+        finetune=Schedule(steps=1500, batch=16, lr=5e-4, warm_up=0.1, epochs=72),
         pictures=32,
     ),
     "paper": Settings(
         texels=768,
         frames=17000,
-        geometry=Ranks(192, 128, 96),
-        appearance=Ranks(128, 128, 96),
-        components=128,
-        hidden=384,
+        **vars(MEASURED),
         sweeps=20,
         regression=Schedule(steps=20000, batch=512, lr=2e-3, epochs=3000),
         finetune=Schedule(steps=5000, batch=64, lr=5e-4, warm_up=0.1, epochs=20),
