@@ -1,6 +1,7 @@
-"""Print how near students of several ranks come to their teacher, trained at full length, and what each costs.
+"""Print how near students of several sizes come to their teacher, and what each costs.
 
-python tools/research/train_ranks.py hero.work/recording-* [other.work/recording-*] [--points 0 4] [--device cuda]
+python tools/research/train_ranks.py hero.work/recording-* [other.work/recording-*] [--closed-form] [--device cuda]
+python tools/research/train_ranks.py hero.work/recording-* --sizes 24,96,16/64,256,64/72/192
 
 Both branches are trained as mua-train does; the mesh is the teacher's. Errors are decibels, training and held out:
 "first order" from subbands weighted by how much images change, "drawn" from images of the teacher and the student.
@@ -8,47 +9,44 @@ Both branches are trained as mua-train does; the mesh is the teacher's. Errors a
 
 import argparse
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
 import numpy as np
 import torch
-from choose_ranks import costs, user_rows
 
 import mua.cli  # noqa: F401 first of all: it sets how torch's threads wait
+from mua.arrays import Array
+from mua.asset.count import flops, parameters
 from mua.avatar.camera import orbit
 from mua.avatar.decode import box_of
+from mua.bench.random_avatar import ENCODING, RINGS, SPOKES
 from mua.channels import APPEARANCE, CHANNELS, GEOMETRY
 from mua.pose.clip import is_range
-from mua.pose.descriptor import describe
 from mua.recording import Recording, WholeFrame
 from mua.splatting.posing import TorchRig, pose_splats
 from mua.splatting.projection import Eye
 from mua.splatting.rasterise import rasterise
+from mua.student.bases import BestCoefficients
 from mua.student.distil import describe_frames, prepare
 from mua.student.model import Student
+from mua.student.outline import Body, outline
 from mua.student.sensitivity import measure_sensitivities
-from mua.student.settings import MEASURED, PAPER_SIZES, PRESETS, Ranks, Settings, Sizes, preset
+from mua.student.settings import MEASURED, PAPER_SIZES, PRESETS, Ranks, Settings, Sizes, StageName, preset
 from mua.student.source import hold
 from mua.student.stages import BRANCHES, fit_branch, mean_lowpass
 from mua.training.checkpoint import Checkpoints, run_key
 from mua.training.optimise import Progress, Run
 from mua.wavelets import Bands
 
-POINTS = (
-    PAPER_SIZES,
-    MEASURED,
-    Sizes(Ranks(64, 128, 64), Ranks(128, 128, 128), components=128, hidden=384),
-    Sizes(Ranks(32, 64, 32), Ranks(96, 128, 64), components=128, hidden=384),
-    Sizes(Ranks(32, 64, 8), Ranks(64, 128, 32), components=128, hidden=384),
-    Sizes(Ranks(32, 64, 8), Ranks(64, 128, 32), components=128, hidden=256),
-)
+BODY = Body(ENCODING.width, 3 * (9 + 6 * len(ENCODING.joints)), RINGS * SPOKES, 300_000)  # as comparisons.md counts
 KEPT = "sensitivities of images"
 FRAMES, AT_ONCE = 200, 20  # of each kind whose subbands are compared, and how many of them at once
 DRAWN = 16  # frames of each kind
 VIEWS, SIDE, ELEVATION = (0.5, 3.4), 256, 0.1  # azimuths in radians; pixels
+Predict = Callable[[Array, bool], Bands]  # the subbands of recorded frames, by rows, of training or held out
 
 
 class Shared(Checkpoints):
@@ -63,18 +61,39 @@ def main() -> None:
     arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     arguments.add_argument("recordings", type=Path, nargs="+")
     arguments.add_argument("--preset", choices=PRESETS, default="paper", help="of which the schedule is")
-    arguments.add_argument("--points", type=int, nargs="*", default=range(len(POINTS)), help="numbers from 0 on")
+    arguments.add_argument(
+        "--sizes",
+        type=sizes_of,
+        nargs="*",
+        default=(PAPER_SIZES, MEASURED),
+        help="LL,D3,D2 of geometry/LL,D3,D2 of appearance/components/hidden; those of the paper and of the presets",
+    )
+    arguments.add_argument("--closed-form", action="store_true", help="bases with their best coefficients, no networks")
     arguments.add_argument("--device", default="cpu", help="cpu or cuda")
     given = arguments.parse_args()
     print("| recording | geometry | appearance | hidden | GFLOPs | M parameters | first order | drawn |")
     print("| --- | --- | --- | --- | --- | --- | --- | --- |", flush=True)
+    until: StageName | None = "bases" if given.closed_form else None
     for path in given.recordings:
-        for line in measure(Recording(path), given.preset, given.points, torch.device(given.device)):
+        for line in measure(Recording(path), given.preset, given.sizes, torch.device(given.device), until=until):
             print("|", path.parent.stem, "|", line, flush=True)
 
 
-def measure(recording: Recording, name: str, points: list[int], device: torch.device) -> Iterator[str]:
-    """A row for each point."""
+def sizes_of(text: str) -> Sizes:
+    geometry, appearance, components, hidden = text.split("/")
+    ranks = (Ranks(*map(int, part.split(","))) for part in (geometry, appearance))
+    return Sizes(*ranks, components=int(components), hidden=int(hidden))
+
+
+def measure(
+    recording: Recording,
+    name: str,
+    every: Sequence[Sizes],
+    device: torch.device,
+    *,
+    until: StageName | None = None,
+) -> Iterator[str]:
+    """A row for each of the sizes; until the bases, with their best coefficients."""
     settings = replace(preset(name), texels=recording.rig.texels.size, frames=recording.count())
     key = run_key((recording.fingerprint(), settings.pictures), [])
     kept = Shared(recording.directory.parent / "ranks", key)
@@ -83,17 +102,25 @@ def measure(recording: Recording, name: str, points: list[int], device: torch.de
     looking = run.alone(KEPT)
     tensors = looking.once(KEPT, lambda: measure_sensitivities(recording, settings.pictures, looking)._asdict())
     seen = Bands(**tensors)
-    for point in (POINTS[number] for number in points):
-        own = replace(settings, **vars(point))
-        student = fitted(recording, own, seen, run)
-        ranks = (" ".join(map(str, vars(part).values())) for part in (point.geometry, point.appearance))
-        flops, parameters = costs(replace(own, texels=768)) / (1e9, 1e6)
-        near = (first_order(student, recording, seen), drawn(student, recording))
+    for sizes in every:
+        own = replace(settings, **vars(sizes))
+        student = fitted(recording, own, seen, run, until=until)
+        ranks = (" ".join(map(str, vars(part).values())) for part in (sizes.geometry, sizes.appearance))
+        spent, held = costs(own) / (1e9, 1e6)
+        predict = by_pose(student, recording) if until is None else by_subbands(student, recording)
+        near = (first_order(predict, recording, seen), drawn(predict, student, recording))
         found = (" / ".join(f"{each:.2f}" for each in kinds) for kinds in near)
-        yield " | ".join([*ranks, f"{point.hidden}", f"{flops:.3f}", f"{parameters:.1f}", *found]) + " |"
+        yield " | ".join([*ranks, f"{sizes.hidden}", f"{spent:.3f}", f"{held:.1f}", *found]) + " |"
 
 
-def fitted(recording: Recording, settings: Settings, seen: Bands, run: Run) -> Student:
+def costs(settings: Settings) -> Array:
+    """Operations of a frame and parameters, at 768 texels."""
+    student = outline(replace(settings, texels=768), BODY)
+    spent = flops(student)
+    return np.array([sum(spent.values()) - spent["components of the pose"], sum(parameters(student).values())])
+
+
+def fitted(recording: Recording, settings: Settings, seen: Bands, run: Run, *, until: StageName | None) -> Student:
     """A student with both branches trained."""
     student, samples = prepare(recording, settings)
     student.to(run.device)
@@ -110,6 +137,7 @@ def fitted(recording: Recording, settings: Settings, seen: Bands, run: Run) -> S
             name=name,
             run=run.alone(name),
             parts=samples.parts,
+            until=until,
             sensitivities=seen,
             frames=counts,
             wavelet=student.wavelet,
@@ -120,43 +148,72 @@ def fitted(recording: Recording, settings: Settings, seen: Bands, run: Run) -> S
     return student
 
 
+def by_pose(student: Student, recording: Recording) -> Predict:
+    """What the student predicts."""
+    described = [describe_frames(recording, student.encoding, held_out=kind) for kind in (False, True)]
+    return lambda rows, held_out: student.predict(torch.from_numpy(described[held_out][rows]).to(student.mean))
+
+
+def by_subbands(student: Student, recording: Recording) -> Predict:
+    """What its bases could show: the best coefficients of the recorded subbands."""
+    best = [BestCoefficients(branch) for branch in student.branches]
+
+    def predict(rows: Array, held_out: bool) -> Bands:
+        truth = Bands(*(band.to(student.mean) for band in subbands(recording, rows, held_out)))
+        kinds = zip(best, (GEOMETRY, APPEARANCE), strict=True)
+        return student.synthesize(tuple(own(truth.of(channels)) for own, channels in kinds))
+
+    return predict
+
+
+def subbands(recording: Recording, rows: Array, held_out: bool) -> Bands:
+    return recording.subbands(slice(0, CHANNELS), rows, held_out=held_out)
+
+
 @torch.no_grad()
-def first_order(student: Student, recording: Recording, seen: Bands) -> list[float]:
+def first_order(predict: Predict, recording: Recording, seen: Bands) -> list[float]:
     """Decibels of the error that the subbands' errors make in images, of the user's frames of each kind."""
     found = []
     for held_out in (False, True):
         rows = user_rows(recording, held_out=held_out)
         rows = rows[np.linspace(0, len(rows) - 1, min(len(rows), FRAMES)).astype(int)]
-        described = torch.from_numpy(describe_frames(recording, student.encoding, held_out=held_out)[rows]).float()
         error = 0.0
-        for part in np.array_split(np.arange(len(rows)), max(len(rows) // AT_ONCE, 1)):
-            predicted = student.predict(described[part].to(student.mean))
-            truth = recording.subbands(slice(0, CHANNELS), rows[part], held_out=held_out)
-            for one, other, worth in zip(predicted, truth, seen, strict=True):
+        for part in np.array_split(rows, max(len(rows) // AT_ONCE, 1)):
+            truth = subbands(recording, part, held_out)
+            for one, other, worth in zip(predict(part, held_out), truth, seen, strict=True):
                 error += float(((one - other.to(one)) * worth).double().square().sum())
         found.append(-10 * np.log10(error / len(rows)))
     return found
 
 
+def user_rows(recording: Recording, *, held_out: bool) -> Array:
+    """Rows of a kind without those of the built-in range of motion."""
+    clips = [clip for clip in recording.clips if clip.held_out == held_out]
+    return np.flatnonzero(
+        np.repeat([not is_range(clip.name) for clip in clips], [len(clip.recorded) for clip in clips])
+    )
+
+
 @torch.no_grad()
-def drawn(student: Student, recording: Recording) -> list[float]:
-    """The mean PSNR, decibels, of the student's texture on the teacher's mesh, of the user's frames of each kind."""
+def drawn(predict: Predict, student: Student, recording: Recording) -> list[float]:
+    """The mean PSNR, decibels, of predicted textures on the teacher's mesh, of the user's frames of each kind."""
     rig = TorchRig.of(recording.rig, student.static.T)
     found = []
     for held_out in (False, True):
+        clips = [clip for clip in recording.clips if clip.held_out == held_out]
+        rows = {place: row for row, place in enumerate((clip.name, at) for clip in clips for at in clip.recorded)}
         frames = [frame for frame in recording.whole_frames(held_out) if not is_range(frame.clip.name)]
         chosen = [frames[place] for place in np.linspace(0, len(frames) - 1, min(len(frames), DRAWN)).astype(int)]
-        found.append(float(np.mean([psnr for frame in chosen for psnr in compare(student, recording, rig, frame)])))
+        shown = ((frame, predict(np.array([rows[frame.clip.name, frame.index]]), held_out)) for frame in chosen)
+        found.append(float(np.mean([psnr for pair in shown for psnr in compare(student, recording, rig, *pair)])))
     return found
 
 
-def compare(student: Student, recording: Recording, rig: TorchRig, frame: WholeFrame) -> Iterator[float]:
+def compare(student: Student, recording: Recording, rig: TorchRig, frame: WholeFrame, bands: Bands) -> Iterator[float]:
     """The PSNR of each view, decibels, over black."""
     pose, to = frame.clip.pose(frame.index), partial(torch.as_tensor, dtype=torch.float32, device=student.mean.device)
-    skeleton = recording.rig.skeleton
-    described = describe(skeleton, student.encoding, frame.clip.rotations, frame.clip.translations)[[frame.index]]
-    joints, mesh = to(skeleton.skinning(pose.rotations, pose.translations)), to(frame.mesh)
-    textures = (to(frame.texture), student.texture(student.predict(to(described)))[0])
+    joints = to(recording.rig.skeleton.skinning(pose.rotations, pose.translations))
+    mesh, textures = to(frame.mesh), (to(frame.texture), student.texture(bands)[0])
     truth, own = (pose_splats(rig, joints, mesh, texture) for texture in textures)
     box = box_of(truth.centres.cpu().numpy())
     for azimuth in VIEWS:
