@@ -34,7 +34,7 @@ from mua.student.distil import describe_frames, prepare
 from mua.student.model import Student
 from mua.student.outline import Body, outline
 from mua.student.sensitivity import measure_sensitivities
-from mua.student.settings import MEASURED, PAPER_SIZES, PRESETS, Ranks, Settings, Sizes, StageName, preset
+from mua.student.settings import LEAN_SIZES, PAPER_SIZES, PRESETS, Ranks, Settings, Sizes, StageName, preset
 from mua.student.source import hold
 from mua.student.stages import BRANCHES, fit_branch, mean_lowpass
 from mua.training.checkpoint import Checkpoints, run_key
@@ -65,7 +65,7 @@ def main() -> None:
         "--sizes",
         type=sizes_of,
         nargs="*",
-        default=(PAPER_SIZES, MEASURED),
+        default=(PAPER_SIZES, LEAN_SIZES),
         help="LL,D3,D2 of geometry/LL,D3,D2 of appearance/components/hidden; those of the paper and of the presets",
     )
     arguments.add_argument("--closed-form", action="store_true", help="bases with their best coefficients, no networks")

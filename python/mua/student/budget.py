@@ -6,7 +6,7 @@ from mua.asset.count import flops, parameters
 from mua.asset.tensors import Storage
 from mua.errors import InputError
 from mua.student.outline import Body, outline
-from mua.student.settings import MEASURED, Budget, Ranks, Settings, Sizes
+from mua.student.settings import LEAN_SIZES, Budget, Ranks, Settings, Sizes
 
 # Bytes of a file beside what is learnt.
 TEXEL_BYTES = 17.5  # where a valid texel lies on the template, and its share of the surface
@@ -22,7 +22,7 @@ FRONTIER = (
     Sizes(Ranks(16, 32, 16), Ranks(48, 96, 32), components=72, hidden=192),
     Sizes(Ranks(16, 64, 16), Ranks(48, 128, 64), components=72, hidden=192),
     Sizes(Ranks(24, 64, 16), Ranks(64, 192, 64), components=72, hidden=192),
-    MEASURED,
+    LEAN_SIZES,
     Sizes(Ranks(32, 96, 32), Ranks(96, 256, 64), components=96, hidden=256),
     Sizes(Ranks(64, 128, 64), Ranks(128, 256, 96), components=128, hidden=384),
 )

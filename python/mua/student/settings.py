@@ -80,7 +80,7 @@ class Settings:
 
 PAPER_SIZES = Sizes(Ranks(192, 128, 96), Ranks(128, 128, 96), components=128, hidden=384)  # its hidden layers: ours
 # Draws as well as PAPER_SIZES with bior4.4, for half the operations and parameters (docs/research/ranks.md).
-MEASURED = Sizes(Ranks(24, 96, 16), Ranks(64, 256, 64), components=72, hidden=192)
+LEAN_SIZES = Sizes(Ranks(24, 96, 16), Ranks(64, 256, 64), components=72, hidden=192)
 
 PRESETS = {
     "tiny": Settings(
@@ -98,7 +98,7 @@ PRESETS = {
     "preview": Settings(
         texels=384,
         frames=1500,
-        **vars(MEASURED),
+        **vars(LEAN_SIZES),
         sweeps=15,
         regression=Schedule(steps=4000, batch=512, lr=2e-3, epochs=3000),
         finetune=Schedule(steps=1500, batch=16, lr=5e-4, warm_up=0.1, epochs=72),
@@ -107,7 +107,7 @@ PRESETS = {
     "paper": Settings(
         texels=768,
         frames=17000,
-        **vars(MEASURED),
+        **vars(LEAN_SIZES),
         sweeps=20,
         regression=Schedule(steps=20000, batch=512, lr=2e-3, epochs=3000),
         finetune=Schedule(steps=5000, batch=64, lr=5e-4, warm_up=0.1, epochs=20),
