@@ -81,8 +81,8 @@ def main() -> None:
 
 def sizes_of(text: str) -> Sizes:
     geometry, appearance, components, hidden = text.split("/")
-    ranks = (Ranks(*map(int, part.split(","))) for part in (geometry, appearance))
-    return Sizes(*ranks, components=int(components), hidden=int(hidden))
+    ranks = [Ranks(*map(int, part.split(","))) for part in (geometry, appearance)]
+    return Sizes(ranks[0], ranks[1], int(components), int(hidden))
 
 
 def measure(
@@ -156,12 +156,11 @@ def by_pose(student: Student, recording: Recording) -> Predict:
 
 def by_subbands(student: Student, recording: Recording) -> Predict:
     """What its bases could show: the best coefficients of the recorded subbands."""
-    best = [BestCoefficients(branch) for branch in student.branches]
+    geometry, appearance = (BestCoefficients(branch) for branch in student.branches)
 
     def predict(rows: Array, held_out: bool) -> Bands:
         truth = Bands(*(band.to(student.mean) for band in subbands(recording, rows, held_out)))
-        kinds = zip(best, (GEOMETRY, APPEARANCE), strict=True)
-        return student.synthesize(tuple(own(truth.of(channels)) for own, channels in kinds))
+        return student.synthesize((geometry(truth.of(GEOMETRY)), appearance(truth.of(APPEARANCE))))
 
     return predict
 
