@@ -7,7 +7,13 @@ import pytest
 from tube import tube
 
 from mua.rig.character import Mesh
-from mua.teachers.simulated.looseness import FIRM_LOOSENESS, SOFT_LOOSENESS, UNKNOWN_LOOSENESS, estimate_looseness
+from mua.teachers.simulated.looseness import (
+    FIRM_LOOSENESS,
+    SOFT_LOOSENESS,
+    TIGHT_LOOSENESS,
+    UNKNOWN_LOOSENESS,
+    estimate_looseness,
+)
 
 ROUNDING = 1e3 * float(np.finfo(np.float32).eps)  # skin weights are float32; a dozen passes of averages
 
@@ -29,7 +35,7 @@ def test_head_and_hands_are_firmer_than_the_trunk() -> None:
     )
     looseness = estimate_looseness(replace(character, skeleton=skeleton))
     height = character.mesh.vertices[:, 1]
-    np.testing.assert_allclose(looseness[height < 0.2], SOFT_LOOSENESS, atol=0.01)
+    np.testing.assert_allclose(looseness[height < 0.2], TIGHT_LOOSENESS, atol=0.01)
     np.testing.assert_allclose(looseness[height > 1.7], FIRM_LOOSENESS, atol=0.01)
     assert np.all(np.diff(looseness.reshape(101, -1)[:, 0]) < 1e-3)
 
@@ -50,6 +56,34 @@ def test_what_a_hand_holds_is_firm_and_what_hangs_from_the_head_is_not() -> None
     held, hanging = (estimate_looseness(replace(character, skeleton=one))[end] for one in (hand, head))
     np.testing.assert_allclose(held, FIRM_LOOSENESS, atol=0.01)
     np.testing.assert_allclose(hanging, SOFT_LOOSENESS, atol=0.01)
+
+
+def test_a_shirt_with_room_beneath_it_hangs_and_the_body_in_it_does_not() -> None:
+    character = tube(rings=101)
+    mesh, count = character.mesh, len(character.mesh.vertices)
+    shirt = mesh.vertices * [1.8, 1, 1.8]
+    both = replace(
+        character,
+        skeleton=replace(
+            character.skeleton,
+            names=("Hips", "Spine", "Chest", "LeftArm", "RightUpLeg", "Head"),
+            parents=np.array([-1, 0, 1, 1, 0, 1], np.int32),
+            bind_rotations=np.tile([1.0, 0, 0, 0], (6, 1)),
+            bind_translations=np.zeros((6, 3)),
+        ),
+        mesh=replace(
+            mesh,
+            vertices=np.concatenate([mesh.vertices, shirt]),
+            faces=np.concatenate([mesh.faces, mesh.faces + count]),
+            uv_faces=np.concatenate([mesh.uv_faces, mesh.uv_faces]),
+        ),
+        skin_indices=np.tile(character.skin_indices, (2, 1)),
+        skin_weights=np.tile(character.skin_weights, (2, 1)),
+    )
+    body, hanging = np.split(estimate_looseness(both), 2)
+    middle = np.abs(mesh.vertices[:, 1] - 0.9) < 0.4
+    np.testing.assert_allclose(body[middle], TIGHT_LOOSENESS, atol=0.01)
+    np.testing.assert_allclose(hanging[middle], SOFT_LOOSENESS, atol=0.01)
 
 
 @pytest.mark.parametrize("side", [1, -1])
