@@ -45,7 +45,7 @@ def test_a_cape_has_room_from_both_sides() -> None:
     corners = np.array([[-0.3, 0.4, -0.3], [0.3, 0.4, -0.3], [0.3, 1.5, -0.3], [-0.3, 1.5, -0.3]])
     count, outside = len(BODY.vertices), np.array([[0, 2, 1], [0, 3, 2]])
     sheet = np.concatenate([outside, outside[:, ::-1] + 4])
-    vertices = np.concatenate([BODY.vertices, corners, corners + [0, 0, 0.003]])
+    vertices = np.concatenate([BODY.vertices, corners, corners + np.array([0, 0, 0.003])])
     found = room(vertices, np.concatenate([BODY.faces, sheet + count]))
     assert found[count:].min() > 0.7
     assert found[:count][MIDDLE].max() < 0.1

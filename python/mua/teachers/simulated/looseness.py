@@ -8,7 +8,6 @@ from scipy.sparse import csgraph
 
 from mua.arrays import Array
 from mua.pose.joint_names import roles
-from mua.pose.skeleton import Skeleton
 from mua.rig.bones import figure_scale
 from mua.rig.character import Character
 from mua.teachers.simulated.room import room_beneath

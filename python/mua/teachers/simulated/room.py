@@ -43,19 +43,20 @@ def look_in(
 ):
     """The share of the lines from each point that run through a body."""
     i = wp.tid()
-    found = float(0.0)
+    found = wp.float32(0.0)
     for k in range(inward.shape[1]):
         away = inward[i, k]
         start = points[i] + lift * away
-        looking = bool(True)
+        looking = wp.bool(True)
         for _layer in range(LAYERS):
             if looking:
                 hit = wp.mesh_query_ray(surface, start, away, FAR)
                 looking = hit.result and hit.t < close and wp.dot(hit.normal, away) < 0.0
                 if looking:
                     start += (hit.t + lift) * away
-                elif hit.result and hit.t > thin and wp.dot(hit.normal, away) > 0.0:
-                    if (legs[i] | legs[hit.face]) != BOTH:
+                else:
+                    far_wall = hit.result and hit.t > thin and wp.dot(hit.normal, away) > 0.0
+                    if far_wall and (legs[i] | legs[hit.face]) != BOTH:
                         found += 1.0
     body[i] = found / float(inward.shape[1])
 
@@ -80,9 +81,7 @@ def room_beneath(
     return np.asarray(np.clip(room, 0, 1))
 
 
-def _through_bodies(
-    points: Array, vertices: Array, faces: Array, legs: Array, *, inward: Array, scale: float
-) -> Array:
+def _through_bodies(points: Array, vertices: Array, faces: Array, legs: Array, *, inward: Array, scale: float) -> Array:
     """The share [F] of the lines from each triangle that run through a body."""
     rng = np.random.default_rng(0)
     around = rng.standard_normal((len(faces), LINES, 3))
