@@ -46,12 +46,12 @@ def measure(path: Path, motion: Sequence[Path]) -> None:
             print(f"{path.stem}, {name}: " + ", ".join(f"{mm:.1f}" for mm in figures) + " mm", flush=True)
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> None:
     """Measure each character."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("characters", type=Path, nargs="+")
     parser.add_argument("--motion", type=Path, nargs="+", required=True)
-    options = parser.parse_args()
+    options = parser.parse_args(arguments)
     for path in options.characters:
         measure(path, options.motion)
 
