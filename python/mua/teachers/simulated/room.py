@@ -1,0 +1,101 @@
+"""Where a surface has room beneath it, as skirts, coats, capes and wide sleeves have: there it hangs.
+
+A line goes inward from each triangle. Through skin, and clothes that lie on it, it runs through the body until it
+meets the far wall from within. Elsewhere it leaves a thin sheet, meets the outside of something farther off, such as
+a leg below a skirt, the other side of a skirt about both legs, or nothing.
+"""
+
+# mypy: disable-error-code="index, operator, attr-defined, no-untyped-def, var-annotated"
+# (the body of the kernel is Warp's language, not Python)
+
+import numpy as np
+import warp as wp
+
+from mua.arrays import Array
+from mua.rig.bones import figure_scale
+from mua.teachers.simulated.smoothing import low_pass
+from mua.training.warp_start import start
+
+DEVICE = "cpu"
+LINES = 12  # from each triangle
+SPREAD = np.radians(40)  # of the lines about straight inward, at most
+CLOSE = 0.015  # metres on a person between clothes and what they lie on
+THIN = 0.01  # metres on a person: a sheet, not a limb
+LAYERS = wp.constant(4)  # of clothes that lie on each other
+LIFT = 5e-4  # metres on a person, from which a line starts: what lies closer is the surface itself
+BOTH = wp.constant(3)  # legs: the left is 1, the right 2
+FAR = wp.constant(1.0e6)  # metres
+EVEN = 0.2  # metres on a person: room that is shorter than half of this is a gap in a body
+
+start()
+
+
+@wp.kernel(enable_backward=False)
+def look_in(
+    surface: wp.uint64,
+    points: wp.array[wp.vec3],
+    inward: wp.array2d[wp.vec3],
+    legs: wp.array[int],
+    lift: float,
+    close: float,
+    thin: float,
+    body: wp.array[float],
+):
+    """The share of the lines from each point that run through a body."""
+    i = wp.tid()
+    found = wp.float32(0.0)
+    for k in range(inward.shape[1]):
+        away = inward[i, k]
+        start = points[i] + lift * away
+        looking = wp.bool(True)
+        for _layer in range(LAYERS):
+            if looking:
+                hit = wp.mesh_query_ray(surface, start, away, FAR)
+                looking = hit.result and hit.t < close and wp.dot(hit.normal, away) < 0.0
+                if looking:
+                    start += (hit.t + lift) * away
+                else:
+                    far_wall = hit.result and hit.t > thin and wp.dot(hit.normal, away) > 0.0
+                    if far_wall and (legs[i] | legs[hit.face]) != BOTH:
+                        found += 1.0
+    body[i] = found / float(inward.shape[1])
+
+
+def room_beneath(
+    vertices: Array,  # [V, 3]
+    faces: Array,  # [F, 3]
+    *,
+    legs: Array,  # [F] which legs move it: 0, the left 1, the right 2, or 3
+) -> Array:
+    """How much room [V] the surface has beneath it, from 0 (a body) to 1."""
+    scale = figure_scale(vertices)
+    corners = vertices[faces]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    areas = np.linalg.norm(normals, axis=1)
+    inward = -normals / np.maximum(areas, np.finfo(float).tiny)[:, None]
+    body = _through_bodies(corners.mean(axis=1), vertices, faces, legs, inward=inward, scale=scale)
+    total, known = (
+        np.bincount(faces.ravel(), np.repeat(values, 3), len(vertices)) for values in ((1 - body) * areas, areas)
+    )
+    room = low_pass(vertices, faces, EVEN * scale)(total / np.maximum(known, np.finfo(float).tiny))
+    return np.asarray(np.clip(room, 0, 1))
+
+
+def _through_bodies(points: Array, vertices: Array, faces: Array, legs: Array, *, inward: Array, scale: float) -> Array:
+    """The share [F] of the lines from each triangle that run through a body."""
+    rng = np.random.default_rng(0)
+    around = rng.standard_normal((len(faces), LINES, 3))
+    sideways = around - np.einsum("fkc,fc->fk", around, inward)[..., None] * inward[:, None]
+    sideways /= np.maximum(np.linalg.norm(sideways, axis=-1, keepdims=True), np.finfo(float).tiny)
+    lean = SPREAD * np.sqrt(np.arange(LINES) / LINES)[:, None]
+    lines = np.cos(lean) * inward[:, None] + np.sin(lean) * sideways
+    mesh = wp.Mesh(
+        points=wp.array(vertices, dtype=wp.vec3, device=DEVICE),
+        indices=wp.array(faces.ravel(), dtype=int, device=DEVICE),
+    )
+    body = wp.zeros(len(faces), dtype=float, device=DEVICE)
+    places, away = (wp.array(values, dtype=wp.vec3, device=DEVICE) for values in (points, lines))
+    inputs = [mesh.id, places, away, wp.array(legs, dtype=int, device=DEVICE)]
+    lengths = [scale * length for length in (LIFT, CLOSE, THIN)]
+    wp.launch(look_in, dim=len(faces), inputs=[*inputs, *lengths], outputs=[body], device=DEVICE)
+    return np.asarray(body.numpy(), dtype=np.float64)
