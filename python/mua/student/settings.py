@@ -88,7 +88,7 @@ PRESETS = {
         appearance=Ranks(128, 128, 96),
         components=128,
         hidden=384,
-        sweeps=15,
+        sweeps=10,
         regression=Schedule(steps=4000, batch=512, lr=2e-3, epochs=3000),
         finetune=Schedule(steps=1000, batch=16, lr=5e-4, warm_up=0.1, epochs=20),
         pictures=32,
