@@ -8,6 +8,7 @@ import torch
 
 from mua.student.factorize import (
     Factors,
+    alternate,
     blendshapes,
     fit_coefficients,
     separable_blendshapes,
@@ -110,6 +111,24 @@ def test_sweeps_never_raise_the_error(worth: torch.Tensor | None) -> None:
         errors.append(squared_error(x, factors, worth))
     rounding = 100 * FLOAT32 * errors[0]
     assert all(after <= before + rounding for before, after in pairwise(errors))
+
+
+@pytest.mark.parametrize("worth", [None, seen(11)])
+def test_momentum_never_raises_the_error(worth: torch.Tensor | None) -> None:
+    x = smooth_bands(37, 11)
+    start = start_from_modes(x, 9)
+    errors = [squared_error(x, alternate(x, start, sweeps=count, worth=worth), worth) for count in range(1, 26)]
+    rounding = 100 * FLOAT32 * errors[0]
+    assert all(after <= before + rounding for before, after in pairwise(errors))
+
+
+@pytest.mark.parametrize("worth", [None, seen(11)])
+def test_fifteen_rounds_with_momentum_beat_twenty_without(worth: torch.Tensor | None) -> None:
+    x = smooth_bands(37, 11)
+    plain = start = start_from_modes(x, 9)
+    for _ in range(20):
+        plain = sweep(x, plain, worth)
+    assert squared_error(x, alternate(x, start, sweeps=15, worth=worth), worth) < squared_error(x, plain, worth)
 
 
 def test_sweeps_beat_the_start_from_an_svd() -> None:

@@ -108,6 +108,15 @@ def test_the_users_frames_are_kept_and_end_with_them() -> None:
     assert function(far).square().sum() < 0.2 * targets[~own].square().sum()
 
 
+def test_centres_that_both_widths_share_are_in_memory_once() -> None:
+    x, targets, own = users_and_range()
+    function = fit_beyond(x, targets, own, beyond=10.0, generator=torch.Generator().manual_seed(1))
+    nested = function.terms[1]
+    assert isinstance(nested, smoother.Nested)
+    assert torch.equal(nested.narrow.centres, x[own])
+    assert nested.narrow.centres.data_ptr() == nested.wide.centres.data_ptr()
+
+
 def test_far_from_all_frames_is_the_mean_of_those_that_are_not_the_users() -> None:
     x, targets, own = users_and_range()
     function = fit_beyond(x, targets, own, beyond=10.0, generator=torch.Generator().manual_seed(1))

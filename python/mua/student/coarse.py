@@ -32,12 +32,13 @@ def mesh_pca(
 ) -> MeshPca:
     """The leading principal components of canonical meshes; where frames or vertices are too few, the rest is zero."""
     counts = frame_weights(meshes, weights)
-    mean = (meshes * counts[:, None, None]).mean(0)
-    flat = (meshes - mean).flatten(1)
-    _, s, v = truncated_svd(flat * counts.sqrt()[:, None], components, generator=generator)
+    mean = torch.einsum("f,fva->va", counts, meshes) / len(meshes)
+    roots = counts.sqrt()[:, None]
+    flat = (meshes - mean).flatten(1).mul_(roots)  # in place, because meshes may take hundreds of megabytes
+    _, s, v = truncated_svd(flat, components, generator=generator)
     v = v * (s > torch.finfo(s.dtype).eps * max(flat.shape) * s.max())[:, None]  # directions without motion are noise
     basis = torch.nn.functional.pad(v, (0, 0, 0, components - len(v)))
-    return MeshPca(mean, basis.unflatten(1, meshes.shape[1:]), flat @ basis.T)
+    return MeshPca(mean, basis.unflatten(1, meshes.shape[1:]), flat @ basis.T / roots)
 
 
 def set_pca(coarse: Coarse, meshes: Tensor, run: Run, weights: Tensor | None = None) -> MeshPca:

@@ -99,7 +99,7 @@ PRESETS = {
         texels=384,
         frames=1500,
         **vars(LEAN_SIZES),
-        sweeps=15,
+        sweeps=10,
         regression=Schedule(steps=4000, batch=512, lr=2e-3, epochs=3000),
         finetune=Schedule(steps=1500, batch=16, lr=5e-4, warm_up=0.1, epochs=72),
         pictures=32,

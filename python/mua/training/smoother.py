@@ -156,7 +156,10 @@ def fit_beyond(
     width = math.sqrt(around.width * WIDTH * reach)  # wide, yet not so wide that small motion is flat within it
     besides = fit_smoother(x[own], targets[own] - common(x[own]), generator=generator, noise=ridge, width=width)
     besides = replace(besides, reach=reach)
-    return Sum((mean, Nested(around, besides) if len(x) <= CENTRES else Sum((around, besides))))
+    if len(x) > CENTRES:
+        return Sum((mean, Sum((around, besides))))
+    besides = replace(besides, centres=around.centres[: len(besides.centres)])  # the same, but held once
+    return Sum((mean, Nested(around, besides)))
 
 
 def spread(x: Tensor) -> float:
