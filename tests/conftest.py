@@ -128,6 +128,14 @@ def first_try(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.fixture
+def untimed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Files that are compared are not timed, for tests that look at nothing of the kind."""
+    from mua.evaluation import entries  # here, because few tests need torch
+
+    monkeypatch.setattr(entries, "frames_per_second", lambda *_, **__: 30.0)
+
+
+@pytest.fixture
 def packages(tmp_path: Path) -> list[Path]:
     """Two small UPM packages that keep every rule."""
     import upm_files  # here, because few tests need the tools

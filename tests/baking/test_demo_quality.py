@@ -10,6 +10,7 @@ from operator import add
 from pathlib import Path
 
 import numpy as np
+import pytest
 from silent import Silent
 
 from mua import rotation
@@ -50,10 +51,11 @@ RANDOM_POSES = 8
 LOST = 0.03  # of what the best coefficients would explain, by the MLPs' own on training frames
 
 
+@pytest.mark.usefixtures("untimed")
 def test_student_explains_its_teacher_and_looks_like_it(tmp_path: Path, device: Device) -> None:
     """As `make demo` bakes it. One test, since workers bake each for themselves."""
     demo = replace(preset("tiny"), frames=FRAMES)
-    baked = bake(BakeSettings(tmp_path / "a.muaavatar", tmp_path / "work", demo, "cpu", jobs=2), Silent())
+    baked = bake(BakeSettings(tmp_path / "a.muaavatar", tmp_path / "work", demo, "cpu"), Silent())
     errors = dict(baked.errors)
     assert not missed_on_unseen_motion(errors)
     assert not missed_by_a_stage(errors[TRAINING])

@@ -109,7 +109,7 @@ def test_everything_is_on_the_disk_once_the_parts_are_joined(tmp_path: Path, mon
         fsync(descriptor)
 
     monkeypatch.setattr(os, "fsync", syncing)
-    run(tmp_path / "r", FormulaTeacher)
+    run(tmp_path / "r", FormulaTeacher, jobs=1)
     assert {path.stat().st_ino for path in (tmp_path, tmp_path / "r", *(tmp_path / "r").rglob("*"))} <= synced
 
 
@@ -118,13 +118,13 @@ def test_a_killed_worker_is_reported_and_the_next_run_ends_in_the_same_files(alo
         run(tmp_path / "r", Dying, tmp_path / "flag")
     assert not is_joined(tmp_path / "r")
     assert not list(tmp_path.rglob(".*.part"))  # leftovers may be what fills the disk
-    run(tmp_path / "r", Dying, tmp_path / "flag")
+    run(tmp_path / "r", Dying, tmp_path / "flag", jobs=1)
     assert content(tmp_path / "r") == content(alone)
 
 
 def test_what_a_worker_refuses_is_its_sentence(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"^clip 'walk': a texel is not finite$"):
-        run(tmp_path / "r", Refusing, tmp_path / "flag")
+        run(tmp_path / "r", Refusing, tmp_path / "flag", jobs=1)
 
 
 def ended(process: int) -> bool:
@@ -149,7 +149,7 @@ def test_workers_end_with_a_killed_parent_and_the_next_run_ends_in_the_same_file
     parent.wait()
     while not ended(int(flag.read_text())):
         time.sleep(0.01)
-    run(tmp_path / "r", Waiting, flag)
+    run(tmp_path / "r", Waiting, flag, jobs=1)
     assert content(tmp_path / "r") == content(alone)
 
 
@@ -193,7 +193,7 @@ def test_what_an_undisturbed_run_left_is_not_recorded_anew(alone: Path, tmp_path
     directory, teacher = tmp_path / "r", FormulaTeacher(synthetic_rig())
     record_share(teacher, plan(teacher.rig), directory, rank=0, count=2, rate=RATE)  # the parts of one of two
     notes: list[str] = []
-    run(directory, FormulaTeacher, note=notes.append)
+    run(directory, FormulaTeacher, jobs=1, note=notes.append)
     run(directory, FormulaTeacher, note=notes.append)
     assert notes == []
     assert content(directory) == content(alone)
