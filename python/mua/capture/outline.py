@@ -43,11 +43,11 @@ def fine_silhouette(vertices: Array, faces: Array, camera: CaptureCamera) -> Arr
     corners = places[faces[(depth[faces] > NEAR).all(axis=1)]]
     seen = ((corners.max(axis=1) > 0) & (corners.min(axis=1) < camera.size)).all(axis=1)
     picture = Image.new("1", (FINER * width, FINER * height))
-    draw_polygon = ImageDraw.Draw(picture).draw.draw_polygon  # without looking the colour up for each triangle
+    draw = ImageDraw.Draw(picture)
     # One list of numbers: thousands of lists set off garbage collection.
     flat = np.clip(corners[seen] * FINER, -1e5, 1e5).ravel().tolist()
     for first in range(0, len(flat), 6):
-        draw_polygon(flat[first : first + 6], 1, 1)  # white, filled
+        draw.polygon(flat[first : first + 6], fill=1)
     return np.asarray(picture)
 
 
