@@ -1,4 +1,4 @@
-"""The settings of a training, and three presets: from minutes on a laptop to the sizes of the paper."""
+"""The settings of a training, and three presets: from minutes on a laptop to the paper's texels and frames."""
 
 from dataclasses import dataclass, replace
 from typing import Literal, get_args
