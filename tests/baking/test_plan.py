@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mua.baking.plan import RUN_UP, WHOLE_FRAMES, HeldOut, describe_plan, plan, split, usual_poses
+from mua.baking.plan import HELD_MOST, RUN_UP, WHOLE_FRAMES, HeldOut, describe_plan, plan, split, usual_poses
 from mua.errors import InputError
 from mua.pose.clip import RANGE_OF_MOTION, Clip
 
@@ -69,6 +69,13 @@ def test_held_out_clips_share_a_quarter_of_the_frames_up_to_so_many_each(frames:
     training, *kept = plan([clip("a", 5000)], held, frames=frames)
     assert ([len(one.wanted) for one in kept], len(training.wanted)) == (recorded, frames)
     assert all(one.held_out and one.whole == one.wanted and one.run_up is None for one in kept)
+
+
+def test_all_held_out_clips_together_get_no_more_than_what_their_errors_need() -> None:
+    held = [HeldOut(clip(f"end {number}", 50)) for number in range(21)]
+    _, *kept = plan([clip("a", 5000)], held, frames=1500)
+    counts = [len(one.wanted) for one in kept]
+    assert (sum(counts), min(counts), max(counts)) == (HELD_MOST, 9, 10)
 
 
 def test_how_many_frames_are_recorded_is_said_with_the_reason() -> None:

@@ -102,7 +102,7 @@ def test_a_second_run_repeats_nothing_and_gives_the_same_student(tmp_path: Path)
     source = recording(tmp_path / "recording")
     heard = Heard()
     first = distilled(source, tmp_path / "student", heard)
-    assert heard.stages[0] == "coarse mesh"
+    assert "coarse mesh" in heard.stages
     assert len(set(heard.stages)) == 7
     again = Heard()
     second = distilled(source, tmp_path / "student", again)
@@ -114,7 +114,7 @@ def test_a_recording_that_grew_is_distilled_anew(tmp_path: Path) -> None:
     distilled(recording(tmp_path / "short"), tmp_path / "student", Heard())
     heard = Heard()
     distilled(recording(tmp_path / "long", training=3), tmp_path / "student", heard)
-    assert heard.stages[0] == "coarse mesh"
+    assert "coarse mesh" in heard.stages
 
 
 def test_joints_move_the_mesh_themselves_or_through_a_descendant() -> None:

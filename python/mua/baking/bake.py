@@ -62,7 +62,7 @@ def bake(
     frames: Annotated[
         int | None,
         Option(
-            "Number of training frames to record; a quarter as many held-out frames are added.",
+            "Number of training frames to record; a quarter as many held-out frames, at most 200, are added.",
             default="set by the preset",
             least=1,
         ),

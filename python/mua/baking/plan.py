@@ -12,7 +12,8 @@ from mua.recording import PlannedClip
 
 HELD_SHARE = 5  # without --hold-out, the last fifth of every clip is held out
 HELD_FRAMES = 40  # recorded of each held-out clip at most, all of them whole
-HELD_PART = 4  # all held-out clips together get at most a quarter as many frames as training
+HELD_PART = 4  # all held-out clips together get at most a quarter as many frames as training,
+HELD_MOST = 200  # and no more than this: errors are means over them
 WHOLE_FRAMES = 60  # training frames kept whole to measure the error on
 SHORTEST = 2 * HELD_SHARE  # frames of a clip that is worth cutting
 RUN_UP = 2.0  # seconds before a held-out end that a teacher plays first, so that its cloth is in motion
@@ -60,7 +61,8 @@ def _cut(clips: Sequence[Clip]) -> tuple[list[Clip], list[HeldOut]]:
 
 
 def plan(training: Sequence[Clip], held: Sequence[HeldOut], *, frames: int) -> list[PlannedClip]:
-    """Record `frames` training frames, evenly over all training clips, and up to a quarter as many held-out ones.
+    """Record `frames` training frames, evenly over all training clips, and up to a quarter as many held-out ones,
+    but no more than HELD_MOST.
 
     Every held-out clip gets its share of these; some get none where there are more clips than frames.
     """
@@ -73,7 +75,7 @@ def plan(training: Sequence[Clip], held: Sequence[HeldOut], *, frames: int) -> l
     for clip, start, stop in zip(training, starts[:-1], starts[1:], strict=True):
         wanted, whole = (frozenset((f[(f >= start) & (f < stop)] - start).tolist()) for f in (chosen, kept))
         planned.append(PlannedClip(clip, held_out=False, wanted=wanted, whole=whole))
-    for own, count in zip(held, _shares(max(frames // HELD_PART, 1), len(held)), strict=True):
+    for own, count in zip(held, _shares(min(max(frames // HELD_PART, 1), HELD_MOST), len(held)), strict=True):
         wanted = frozenset(_evenly(len(own.clip), min(count, HELD_FRAMES)).tolist())
         planned.append(PlannedClip(own.clip, held_out=True, wanted=wanted, whole=wanted, run_up=own.run_up))
     return planned

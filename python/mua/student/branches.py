@@ -17,7 +17,8 @@ class Stopped(Exception):
 def fit_apart(tasks: Sequence[Callable[[Run], None]], run: Run) -> None:
     """Fit parts that share nothing but their inputs: on a CPU side by side; else one after the other.
 
-    There half the threads for each do more than all for one: the larger part of a step is too small to be divided.
+    There half the threads for each do more than all for one: the larger part of a step is too small to be divided. A
+    third shares them with the two, and soon ends.
     """
     if len(tasks) < 2 or not side_by_side(run):
         for task in tasks:
@@ -30,7 +31,7 @@ def fit_apart(tasks: Sequence[Callable[[Run], None]], run: Run) -> None:
             raise Stopped
         run.report(progress)
 
-    with thread_share(len(tasks)):
+    with thread_share(2):
         together([partial(task, replace(run, report=report)) for task in tasks], stop=stop.set)
 
 

@@ -28,8 +28,11 @@ def draw_points(
     generalisation: Generalisation,
     generator: torch.Generator,
 ) -> Tensor:
-    """Random points [count, K]: frames, some with a part of another, moved towards a third, and noise; some far out."""
-    points = inputs.new_empty(count, len(components))
+    """Random points [count, K]: frames, some with a part of another, moved towards a third, and noise; some far out.
+
+    They are float16, as they take most of a regression's memory; what is fitted there is computed at these.
+    """
+    points = inputs.new_empty(count, len(components), dtype=torch.float16)
     z = components(inputs)
     for some in points.split(AT_ONCE):
         some.copy_(_draw(inputs, z, components, len(some), steps, generalisation, generator))

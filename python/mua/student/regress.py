@@ -22,11 +22,11 @@ from mua.training.smoother import RIDGE, Smooth, Sum, Through, fit_beyond, fit_s
 
 # Chosen on held-out walks and turns.
 FIRST_LAYER = 0.3  # scale of the first layer's weights at the start: small ones make smooth functions
-VISITS = 32  # uses of each point; the function's values there are computed once
+VISITS = 64  # uses of each point; the function's values there are computed once
 POINTS_AT_ONCE = 1 << 9
-UNSHARED = 1e-4  # share of a direction that a part leaves to the others
+UNSHARED = 1e-3  # share of a direction that a part leaves to the others
 UNSEEN = 1e-5  # share of the spread in the columns of the descriptor that a part does not look at
-FORGONE = 1e-4  # share of the spread of a part's view of the descriptors
+FORGONE = 1e-3  # share of the spread of a part's view of the descriptors
 GENERALISATION = Generalisation()
 
 
@@ -92,7 +92,7 @@ def regress(
         )
         if close:
             frames = z if own is None or not own.any() else z[own]
-            points = torch.cat([points, draw_close(frames, close, generator=generator)])
+            points = torch.cat([points, draw_close(frames, close, generator=generator).half()])
         parts = {part: points[part.start :: part.step] for part in run.processes.parts(count)}
         return {part: (at, _values(smooth, at, width=goal.shape[1])) for part, at in parts.items()}
 
@@ -100,7 +100,7 @@ def regress(
         def part(share: Share) -> Tensor:
             points, values = samples()[share.held]
             places = ((share.rows - share.held.start) // share.held.step).to(points.device)
-            return error(model(points[places]), values[places])
+            return error(model(points[places].to(values)), values[places])
 
         drawn = torch.randint(count, (schedule.batch,), generator=run.generator)
         return run.processes.mean_loss(drawn, part, frames=count)
@@ -113,10 +113,10 @@ def regress(
 
 
 def _values(smooth: Callable[[Tensor], Tensor], points: Tensor, *, width: int) -> Tensor:
-    """A function's values [n, width] at points [n, D], computed in chunks."""
-    values = points.new_empty(len(points), width)
+    """A function's values [n, width], float32, at points [n, D], computed in chunks."""
+    values = points.new_empty(len(points), width, dtype=torch.float32)
     for own, some in zip(values.split(POINTS_AT_ONCE), points.split(POINTS_AT_ONCE), strict=True):
-        own.copy_(smooth(some))
+        own.copy_(smooth(some.to(values)))
     return values
 
 

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
+from threading import Lock
 
 import torch
 from torch import Tensor
@@ -87,34 +88,21 @@ def train(
         if random
         else partial(fit_coarse, components=components, parts=samples.parts, weights=counts)
     )
-    seen: Bands | None = None
+    warm = partial(
+        fit_branch, components=components, parts=samples.parts, until=only, frames=counts, wavelet=student.wavelet
+    )
+    looking = Lock()
 
     def fit_mesh(run: Run) -> None:
         start(student.coarse, inputs, samples.meshes.to(device), settings=settings, run=run.alone("coarse mesh"))
+        release_memory()
 
-    def look(run: Run) -> None:
-        nonlocal seen
-        seen = _sensitivities(samples, run.alone(SENSITIVITIES))
-
-    first = [fit_mesh] if only in (None, "coarse") else []
-    if only != "coarse" and not random:
-        first.append(look)
-    fit_apart(first, run)
-    release_memory()
-    if only == "coarse":
-        return
-    warm = partial(
-        fit_branch,
-        components=components,
-        parts=samples.parts,
-        until=only,
-        sensitivities=seen,
-        frames=counts,
-        wavelet=student.wavelet,
-    )
-    fit = fit_branch_from_noise if random else warm
+    def look(run: Run) -> Bands | None:
+        with looking:  # the branch that comes first measures what both take
+            return _sensitivities(samples, run.alone(SENSITIVITIES))
 
     def fit_named(name: str, branch: Branch, channels: slice, run: Run) -> None:
+        fit = fit_branch_from_noise if random else partial(warm, sensitivities=look(run))
         source = hold(
             samples.subbands,
             channels,
@@ -126,8 +114,11 @@ def train(
         )
         fit(branch, inputs, source, channels=channels, settings=settings, name=name, run=run.alone(name))
 
-    branches = zip(BRANCHES, student.branches, (GEOMETRY, APPEARANCE), strict=True)
-    fit_apart([partial(fit_named, *branch) for branch in branches], run)
+    tasks: list[Callable[[Run], None]] = [fit_mesh] if only in (None, "coarse") else []
+    if only != "coarse":
+        branches = zip(BRANCHES, student.branches, (GEOMETRY, APPEARANCE), strict=True)
+        tasks += [partial(fit_named, *branch) for branch in branches]
+    fit_apart(tasks, run)
     if only is not None:
         return
     low = student.mean_lowpass() if counts is None else mean_lowpass(student, samples)

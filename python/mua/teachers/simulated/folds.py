@@ -27,8 +27,9 @@ class Folds:
         *,
         looseness: Array,  # [V] 0..1
         rng: np.random.Generator,
+        scale: float | None = None,  # size of the figure over that of a person; None: these are all of its vertices
     ) -> None:
-        scale = figure_scale(vertices)
+        scale = figure_scale(vertices) if scale is None else scale
         self._normals = vertex_normals(vertices, faces)
         self._surface = SurfaceFrames(vertices, faces)
         self._smooth = low_pass(vertices, faces, WAVELENGTH * scale)

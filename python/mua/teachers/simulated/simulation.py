@@ -130,9 +130,10 @@ class Simulation:
         *,
         looseness: Array,  # [V] 0..1
         bones: Bones,
+        scale: float | None = None,  # size of the figure over that of a person; None: these are all of its vertices
     ) -> None:
-        self._scale = figure_scale(vertices)
-        looseness = np.where(GRAVITY / spring_frequency(looseness) ** 2 < LEAST_SAG, 0, looseness)
+        self._scale = figure_scale(vertices) if scale is None else scale
+        looseness = np.where(hangs(looseness), looseness, 0)
         starts, neighbours = one_rings(faces, len(vertices))
         own = np.repeat(np.arange(len(vertices)), np.diff(starts))
         lengths = np.maximum(np.linalg.norm(vertices[neighbours] - vertices[own], axis=1), SHORTEST_EDGE * self._scale)
@@ -267,6 +268,13 @@ def _within_limit(evening: Array, own: Array, *, room: Array) -> Array:
 def spring_frequency(looseness: Array) -> Array:
     """Radians per second [V] of the springs that hold vertices at their skinned positions."""
     return np.asarray(2 * np.pi * CLOTH_FREQUENCY / np.maximum(looseness, 1e-3) ** FIRMING)
+
+
+def hangs(
+    looseness: Array,  # [V] 0..1
+) -> Array:
+    """Which vertices [V] are not rigid."""
+    return np.asarray(GRAVITY / spring_frequency(looseness) ** 2 >= LEAST_SAG)
 
 
 def gravity_beyond_rest(
