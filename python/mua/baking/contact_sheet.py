@@ -1,6 +1,7 @@
 """The contact sheet: teacher, student and their difference side by side, on frames that the student never saw."""
 
 from collections.abc import Iterable
+from functools import partial
 
 import numpy as np
 from PIL import Image
@@ -15,6 +16,8 @@ from mua.fidelity.compare import Fidelity
 from mua.fidelity.sheet import worst_strips
 from mua.fidelity.strips import GAIN, caption, difference, sheet
 from mua.recording import WholeFrame
+from mua.training.threads import in_order
+from mua.training.torch_threads import few_threads
 
 CELL = (288, 416)  # width, height, pixels
 COLUMNS = 2  # frames beside each other
@@ -24,7 +27,7 @@ def contact_sheet(avatar: Avatar, frames: Iterable[WholeFrame], *, fidelity: Fid
     """One image with three cells for each frame, below those of the source beside the splats where there are any."""
     strips = [] if fidelity is None else worst_strips(fidelity, CELL)
     strips += [np.full_like(strips[0], 255)] * (len(strips) % COLUMNS) if strips else []
-    strips += [_strip(avatar, frame) for frame in frames]
+    strips += in_order(partial(_strip, avatar), frames, threads=few_threads())
     return sheet(strips, COLUMNS)
 
 

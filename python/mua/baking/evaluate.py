@@ -22,13 +22,12 @@ from mua.student.bases import BestCoefficients
 from mua.student.model import Student
 from mua.texture.fill import Fill
 from mua.training.threads import in_order
-from mua.training.torch_threads import thread_share
+from mua.training.torch_threads import few_threads, thread_share
 from mua.wavelets import dynamic_subbands
 
 TRAINING = "training"
 MESH = "mesh"  # the canonical vertices, beside the attributes of the texture
 BATCH = 2  # frames whose images are held at once, by each thread
-THREADS = 4  # at most: each holds some hundred megabytes
 PICTURES = ("mean", "bands", "best", "student")
 
 # what an RMS error of 1 in raw channels means to a person
@@ -113,7 +112,7 @@ def evaluate(
     groups: dict[str, Errors] = {}
     frames = recording.whole_frames()
     batches = iter(lambda: list(itertools.islice(frames, BATCH)), [])
-    threads = min(torch.get_num_threads(), THREADS)
+    threads = few_threads()
     done = 0
     with thread_share(threads):
         for batch, errors_of_batch in in_order(lambda batch: (batch, comparer.errors(batch)), batches, threads=threads):

@@ -27,13 +27,12 @@ from mua.rig.rig import Rig
 from mua.splatting.projection import Eye, TorchSplats
 from mua.splatting.rasterise import largest_shares
 from mua.training.threads import in_order
-from mua.training.torch_threads import thread_share
+from mua.training.torch_threads import few_threads, thread_share
 
 LARGEST_SHARE = 1 / 24  # as a part of a pixel's colour
 OPEN = 0.01  # times the figure's largest side: texels so near to an open edge are not one-sided
 SAME_PLACE = 1e-6  # times the same side: vertices so near to each other are one, as along the seams of a texture
 POSES, VIEWS = 8, 24  # views of each pose
-THREADS = 4  # views drawn at once, at most: each holds an image and its splats
 PIXEL = 1.0  # texels, in the middle of an image
 FOV = np.radians(60)  # the images': near enough for openings to be looked into
 LARGEST_SIDE = 4096  # pixels
@@ -70,7 +69,7 @@ def shares_behind(
     whole = replace(avatar, rig=replace(avatar.rig, texels=texels))
     behind = np.zeros(len(texels.texels))
     poses = distinct_poses(clips, avatar.encoding.rate, root=avatar.rig.skeleton.root)
-    threads = min(torch.get_num_threads(), THREADS)
+    threads = few_threads()
     with thread_share(threads):
         for number, (clip, frame) in enumerate(poses):
             splats = decode_clip_frame(whole, clip, frame=frame)

@@ -22,7 +22,6 @@ from mua.training.smoother import RIDGE, Smooth, Sum, Through, fit_beyond, fit_s
 
 # Chosen on held-out walks and turns.
 FIRST_LAYER = 0.3  # scale of the first layer's weights at the start: small ones make smooth functions
-VISITS = 64  # uses of each point; the function's values there are computed once
 POINTS_AT_ONCE = 1 << 9
 UNSHARED = 1e-3  # share of a direction that a part leaves to the others
 UNSEEN = 1e-5  # share of the spread in the columns of the descriptor that a part does not look at
@@ -37,10 +36,11 @@ class Fit(NamedTuple):
     fades: bool  # whether the function fades to the mean of these frames; else to that of the user's
     own: float = RIDGE  # noise variance of what the user's frames show besides
     final: bool = False  # whether nothing fits the MLP to the frames afterwards
+    visits: int = 64  # uses of each point; the function's values there are computed once
 
 
 POSED, SWUNG = Fit(0.1, fades=True), Fit(10.0, fades=False)  # light and cloth at rest; cloth that the range swings
-MESH = Fit(POSED.beyond, fades=False, own=5e-4, final=True)
+MESH = Fit(POSED.beyond, fades=False, own=5e-4, final=True, visits=32)
 SWUNG_MESH = MESH._replace(beyond=SWUNG.beyond)
 
 
@@ -74,7 +74,7 @@ def regress(
     unit = unit.clamp(min=torch.finfo(targets.dtype).tiny)
     goal = targets / unit
     mlp = seeded_mlp(z.shape[1], hidden, goal.shape[1], run=run)
-    count = max(schedule.steps * schedule.batch // VISITS, 1)
+    count = max(schedule.steps * schedule.batch // fit.visits, 1)
     close = count // 3 if fit.final else 0
     error = absolute_error if fit.final else squared_error
 

@@ -5,6 +5,8 @@ from contextlib import contextmanager
 
 import torch
 
+FEW = 4
+
 
 @contextmanager
 def thread_share(parts: int) -> Iterator[None]:
@@ -15,3 +17,8 @@ def thread_share(parts: int) -> Iterator[None]:
         yield
     finally:
         torch.set_num_threads(threads)
+
+
+def few_threads() -> int:
+    """How many threads work on items that each hold an image and its splats: some hundred megabytes."""
+    return min(torch.get_num_threads(), FEW)
