@@ -1,6 +1,7 @@
 """What each texel has to cover: the steps to its neighbours, and the surface that lies nearer to it than to others."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -41,10 +42,15 @@ class TexelPoints:
     triangles: Array  # [N] into the mesh's faces
     barycentrics: Array  # [N, 3]
 
-    @property
+    @cached_property
     def places(self) -> Array:
         """[N, 3] metres."""
         return interpolate(self.mesh.vertices, self.mesh.faces[self.triangles], self.barycentrics)
+
+    @cached_property
+    def charts(self) -> Array:
+        """The chart [F] of each face."""
+        return charts_of(self.mesh)
 
 
 def neighbour_steps(
@@ -56,7 +62,7 @@ def neighbour_steps(
     Where there is none, the step on the texel's own triangle stands in, no longer than that triangle is wide.
     """
     mesh, places = points.mesh, points.places
-    chart = charts_of(mesh)[points.triangles]
+    chart = points.charts[points.triangles]
     raw = np.linalg.norm(own, axis=2)
     longest = COARSEST * _usual(raw, chart)
     lengths = np.minimum(raw, longest[:, None])
@@ -116,7 +122,7 @@ def sample_surface(
     row_of_texel[points.texels] = np.arange(len(points.texels))
     inside = (column >= 0) & (column < points.size) & (row >= 0) & (row < points.size)
     texel = np.where(inside, row_of_texel[np.where(inside, row * points.size + column, 0)], -1)
-    charts = charts_of(mesh)
+    charts = points.charts
     stray = (texel < 0) | (charts[points.triangles[texel]] != charts[triangles])
     if stray.any():
         found = cKDTree(places).query(at[stray], k=min(NEAREST, len(places)))[1].reshape(int(stray.sum()), -1)

@@ -9,7 +9,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from mua.arrays import Array
-from mua.rig.charts import charts_of
 from mua.texture.footprints import Samples, TexelPoints, neighbours
 
 SIDES = 4  # neighbours of a texel that does not lie at a border
@@ -59,7 +58,7 @@ def fit_rims(
 
 def _sides(points: TexelPoints) -> Array:
     """How many of its four neighbours each texel [N] has in its own chart."""
-    chart = charts_of(points.mesh)[points.triangles]
+    chart = points.charts[points.triangles]
     found = np.zeros(len(chart), np.int64)
     for a, b in neighbours(points.texels, points.size):
         together = chart[a] == chart[b]
