@@ -6,8 +6,8 @@ a leg below a skirt, the other side of a skirt about both legs, or nothing. Of c
 lies on a body is passed, and a thick hem that stands off a leg is none.
 """
 
-# mypy: disable-error-code="index, operator, attr-defined, no-untyped-def, var-annotated"
-# (the body of the kernel is Warp's language, not Python)
+# mypy: disable-error-code="index, operator, arg-type, attr-defined, no-untyped-def, var-annotated"
+# (the bodies of the kernel and its functions are Warp's language, not Python)
 
 import numpy as np
 import warp as wp
@@ -36,7 +36,7 @@ start()
 @wp.func
 def leg_beyond_air(
     surface: wp.uint64, start: wp.vec3, away: wp.vec3, leg: int, legs: wp.array[int], close: float
-) -> wp.bool:
+) -> bool:
     """Whether a line crosses air and then meets the outside of what the same leg moves."""
     hit = wp.mesh_query_ray(surface, start, away, FAR)
     return hit.result and hit.t > close and wp.dot(hit.normal, away) < 0.0 and (legs[hit.face] & leg) != 0
@@ -53,7 +53,7 @@ def through_body(
     close: float,
     thin: float,
     hem: float,
-) -> wp.bool:
+) -> bool:
     """Whether a line inward from a place on the surface runs through a body, beneath what lies on it."""
     behind = place - lift * away
     start = place + lift * away
