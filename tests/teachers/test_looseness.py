@@ -58,6 +58,36 @@ def test_what_a_hand_holds_is_firm_and_what_hangs_from_the_head_is_not() -> None
     np.testing.assert_allclose(hanging, SOFT_LOOSENESS, atol=0.01)
 
 
+def test_a_grip_that_reaches_into_an_arm_does_not_loosen_it() -> None:
+    character = tube(rings=101)
+    mesh, count = character.mesh, len(character.mesh.vertices)
+    names = ("Hips", "Spine", "LeftArm", "LeftHand", "Sword", "RightUpLeg", "Head")
+    both = replace(
+        character,
+        skeleton=replace(
+            character.skeleton,
+            names=names,
+            parents=np.array([-1, 0, 1, 2, 3, 0, 1], np.int32),
+            bind_rotations=np.tile([1.0, 0, 0, 0], (7, 1)),
+            bind_translations=np.zeros((7, 3)),
+        ),
+        mesh=replace(
+            mesh,
+            vertices=np.concatenate([mesh.vertices, mesh.vertices * [0.3, 1, 0.3]]),
+            faces=np.concatenate([mesh.faces, mesh.faces + count]),
+            uv_faces=np.concatenate([mesh.uv_faces, mesh.uv_faces]),
+        ),
+        skin_indices=np.concatenate(
+            [character.skin_indices, np.full_like(character.skin_indices, names.index("Sword"))]
+        ),
+        skin_weights=np.tile(character.skin_weights, (2, 1)),
+    )
+    arm, sword = np.split(estimate_looseness(both), 2)
+    middle = np.abs(mesh.vertices[:, 1] - 0.9) < 0.4
+    np.testing.assert_allclose(arm[middle], TIGHT_LOOSENESS, atol=0.01)
+    np.testing.assert_allclose(sword, FIRM_LOOSENESS, atol=0.01)
+
+
 def test_a_shirt_with_room_beneath_it_hangs_and_the_body_in_it_does_not() -> None:
     character = tube(rings=101)
     mesh, count = character.mesh, len(character.mesh.vertices)

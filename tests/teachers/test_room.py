@@ -51,6 +51,42 @@ def test_a_cape_has_room_from_both_sides() -> None:
     assert found[:count][MIDDLE].max() < 0.1
 
 
+def in_a_lined_sleeve(air: float, thickness: float, leg: int) -> tuple[Array, Array, Array]:
+    """Room of the body, of the outside of a sleeve with two sides and of its lining, so many metres from the body."""
+    inner, outer = (BODY.vertices * [1 + away / RADIUS, 1, 1 + away / RADIUS] for away in (air, air + thickness))
+    vertices, count = np.concatenate([BODY.vertices, outer, inner]), len(BODY.vertices)
+    faces = np.concatenate([BODY.faces, BODY.faces + count, BODY.faces[:, ::-1] + 2 * count])
+    skin, outside, lining = np.split(room_beneath(vertices, faces, legs=np.full(len(faces), leg)), 3)
+    return skin[MIDDLE], outside[MIDDLE], lining[MIDDLE]
+
+
+@pytest.mark.parametrize("leg", [NO_LEG, RIGHT])
+@pytest.mark.parametrize("air", [-0.002, 0.005])
+def test_a_vest_of_two_sides_that_lies_on_a_body_is_tight(air: float, leg: int) -> None:
+    for part in in_a_lined_sleeve(air, 0.005, leg):
+        assert part.max() < 0.1
+
+
+@pytest.mark.parametrize("leg", [NO_LEG, RIGHT])
+def test_a_wide_sleeve_of_two_sides_has_room_from_both(leg: int) -> None:
+    skin, outside, lining = in_a_lined_sleeve(0.05, 0.005, leg)
+    assert skin.max() < 0.1
+    assert min(outside.min(), lining.min()) > 0.7
+
+
+@pytest.mark.parametrize("leg", [LEFT, RIGHT])
+def test_the_thick_hem_of_a_skirt_that_stands_off_its_leg_has_room(leg: int) -> None:
+    skin, outside, lining = in_a_lined_sleeve(0.04, 0.03, leg)
+    assert skin.max() < 0.1
+    assert min(outside.min(), lining.min()) > 0.7
+
+
+def test_what_is_as_thick_and_lies_on_a_leg_or_is_about_an_arm_is_tight() -> None:
+    for air, leg in ((0.005, LEFT), (0.04, NO_LEG)):
+        _, outside, lining = in_a_lined_sleeve(air, 0.03, leg)
+        assert max(outside.max(), lining.max()) < 0.1
+
+
 def test_a_tube_about_both_legs_is_a_skirt() -> None:
     sides = np.where(BODY.vertices[BODY.faces].mean(axis=1)[:, 0] > 0, LEFT, RIGHT)
     assert room_beneath(BODY.vertices, BODY.faces, legs=sides)[MIDDLE].mean() > 0.5

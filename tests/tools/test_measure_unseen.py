@@ -116,6 +116,10 @@ def test_teacher_frames_are_those_of_a_bake_and_simulated_once(tmp_path: Path, m
     simulated = SimulatedTeacher(replace(character, clips=(), source=None), texels=32)
     frames = simulated.frames(motion.clip, frozenset(motion.frames.tolist()))
     expected = [frame for frame in frames if isinstance(frame, TeacherFrame)]
+    source = tmp_path / "package" / "simulation.py"
+    source.parent.mkdir()
+    source.write_text("GRAVITY = 9.81")
+    monkeypatch.setattr(unseen_teacher, "SOURCES", source.parent)
     teacher = Teacher(None, tmp_path, texels=32)
     first = list(teacher.shown(motion, expected[0].texture))
     monkeypatch.setattr(unseen_teacher, "SimulatedTeacher", None)
@@ -129,6 +133,9 @@ def test_teacher_frames_are_those_of_a_bake_and_simulated_once(tmp_path: Path, m
         np.testing.assert_array_equal(one.texture, same.texture)
     with pytest.raises(TypeError):  # another motion is not taken for this one
         list(anew.shown(replace(motion, clip=motion.clip.cut(slice(1, 12))), expected[0].texture))
+    source.write_text("GRAVITY = 1.62")
+    with pytest.raises(TypeError):  # nor one of another simulation
+        list(Teacher(None, tmp_path, texels=32).shown(motion, expected[0].texture))
 
 
 def test_the_farthest_splat_is_found_wherever_it_is() -> None:

@@ -11,10 +11,12 @@ from pathlib import Path
 
 import numpy as np
 
+import mua
 from mua import rotation
 from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.atlas.detail import read_detail
+from mua.baking.recorded import motion_bytes
 from mua.baking.sources import load_character
 from mua.errors import InputError
 from mua.files.write import replacing
@@ -26,6 +28,7 @@ from mua.rig.character import Character
 from mua.teacher import TeacherFrame
 from mua.teachers.simulated.teacher import SimulatedTeacher
 
+SOURCES = Path(mua.__file__).parent  # the simulation and all that it takes from elsewhere
 LONGEST = 4.0  # seconds of a motion
 RUN_UP = 0.5  # seconds that are simulated and not measured: a teacher's cloth is at rest when a clip begins
 EVERY, MOST = 5, 24  # of the frames after that, one in so many is measured, and no more than so many
@@ -101,7 +104,7 @@ def broken_rigs(avatar: Avatar, *, seed: int = 0) -> Iterator[Motion]:
 class Teacher:
     """Teacher frames of a character, simulated where no earlier run has kept them in `cache`.
 
-    They are found again by the character's file and the motion: empty the directory after changing the simulation.
+    They are found again by the character's file, the motion and the package's sources.
     """
 
     def __init__(self, path: Path | None, cache: Path, *, texels: int, seed: int = 0, fit: Path | None = None) -> None:
@@ -112,6 +115,8 @@ class Teacher:
         self._corrections = None if fit is None or not fit.exists() else np.load(fit)
         fitted = b"" if self._corrections is None else self._corrections.tobytes()
         self._key = hashlib.sha256(f"{texels} {seed}".encode() + content + fitted)
+        for source in sorted(SOURCES.rglob("*.py")):
+            self._key.update(source.read_bytes())
         self._cache, self._texels, self._seed = cache, texels, seed
         self._simulated: SimulatedTeacher | None = None
 
@@ -122,8 +127,7 @@ class Teacher:
     ) -> Iterator[Shown]:
         """The frames of a motion that are measured, its cloth in motion since the first frame of the clip."""
         key = self._key.copy()
-        for array in (motion.clip.rotations, motion.clip.translations, motion.frames):
-            key.update(array.tobytes())
+        key.update(motion_bytes(motion.clip) + motion.frames.tobytes())
         path = self._cache / f"{key.hexdigest()[:16]}.npz"
         if not path.exists():
             self._keep(path, motion)

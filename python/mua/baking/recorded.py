@@ -45,11 +45,12 @@ def recording_key(teacher: Iterable[bytes], planned: list[PlannedClip]) -> str:
     for clip in planned:
         digest.update(f"{clip.clip.name} {clip.held_out} {sorted(clip.wanted)} {sorted(clip.whole or ())}".encode())
         for motion in (clip.clip, clip.run_up):
-            digest.update(b"none" if motion is None else _motion(motion))
+            digest.update(b"none" if motion is None else motion_bytes(motion))
     return digest.hexdigest()[:12]
 
 
-def _motion(clip: Clip) -> bytes:
+def motion_bytes(clip: Clip) -> bytes:
+    """What a clip moves, frame by frame."""
     own = clip.rotations.tobytes() + clip.translations.tobytes()
     if clip.stretches is None:
         return own

@@ -4,12 +4,11 @@ import re
 
 import numpy as np
 from scipy import sparse
-from scipy.sparse import csgraph
 
 from mua.arrays import Array
 from mua.pose.joint_names import roles
-from mua.rig.bones import figure_scale
 from mua.rig.character import Character
+from mua.teachers.simulated.pieces import in_rigid_pieces
 from mua.teachers.simulated.room import room_beneath
 
 FIRM = re.compile(r"head|neck|jaw|eye|hand|finger|thumb|index|middle|ring|pinky|little|foot|feet|toe|ankle|wrist", re.I)
@@ -20,7 +19,7 @@ FIRM_LOOSENESS = 0.05
 TIGHT_LOOSENESS = 0.2  # of skin and clothes that lie on a body: they sag by a millimetre
 SOFT_LOOSENESS = 0.4  # of clothes with room beneath them, and of joints that no body has, such as those of hair
 UNKNOWN_LOOSENESS = 0.3  # of everything on a skeleton whose joint names say nothing
-SMALL = 0.12  # metres: a separate piece of this size or less (eye, tooth, button) is rigid
+HELD = 0.5  # weight of joints below a hand, from which the hand holds a triangle
 OF_LEG = 0.25  # weight of the leg's joints, from which it moves a triangle
 ROOM = 0.3, 0.7  # share of lines inward that run through no body: from tight to soft
 BLUR = 12  # smoothing passes over the edges, so that firm parts do not begin with a step
@@ -30,9 +29,10 @@ def estimate_looseness(character: Character) -> Array:
     """Looseness [V] from 0 (skin) to 1 (hanging cloth), by its joints and the room beneath it."""
     mesh, names = character.mesh, character.skeleton.names
     known = sum(bool(LIMB.search(name)) for name in names) >= 4 and any(FIRM.search(name) for name in names)
+    of_body = _of_body(character) & known
     if known:
         on_body = np.interp(_room(character), ROOM, (TIGHT_LOOSENESS, SOFT_LOOSENESS))
-        firm, body = (_moved_by(joints, character) for joints in (_firm(character), _of_body(character)))
+        firm, body = (_moved_by(joints, character) for joints in (_firm(character), of_body))
         looseness = firm * FIRM_LOOSENESS + body * on_body + (1 - firm - body) * SOFT_LOOSENESS
     else:
         looseness = np.full(len(mesh.vertices), UNKNOWN_LOOSENESS)
@@ -43,7 +43,7 @@ def estimate_looseness(character: Character) -> Array:
     degree = np.maximum(np.asarray(graph.sum(axis=1)).ravel(), 1)
     for _ in range(BLUR):
         looseness = (looseness + graph @ looseness / degree) / 2
-    return np.where(_in_small_pieces(mesh.vertices, graph), 0.0, looseness)
+    return np.where(in_rigid_pieces(character, graph, body=of_body), 0.0, looseness)
 
 
 def _moved_by(joints: Array, character: Character) -> Array:
@@ -51,20 +51,31 @@ def _moved_by(joints: Array, character: Character) -> Array:
     return np.asarray(np.sum(joints[character.skin_indices] * character.skin_weights, axis=1))
 
 
-def _firm(character: Character) -> Array:
-    """Whether each joint [J] is one that holds its skin firmly, or below a hand."""
+def _below_hands(character: Character) -> Array:
+    """Whether each joint [J] is below a hand: fingers, and what the hand holds."""
     skeleton = character.skeleton
     held = np.zeros(len(skeleton.names), bool)
     for joint, parent in enumerate(skeleton.parents):
         held[joint] = parent >= 0 and (held[parent] or bool(HOLDS.search(skeleton.names[parent])))
-    for role, joints in roles(skeleton, character.roles).items():
-        held[list(joints)] |= bool(FIRM.search(role))
-    return held | [bool(FIRM.search(name)) for name in skeleton.names]
+    return held
+
+
+def _firm(character: Character) -> Array:
+    """Whether each joint [J] is one that holds its skin firmly, or below a hand."""
+    firm = _below_hands(character) | [bool(FIRM.search(name)) for name in character.skeleton.names]
+    for role, joints in roles(character.skeleton, character.roles).items():
+        firm[list(joints)] |= bool(FIRM.search(role))
+    return firm
 
 
 def _room(character: Character) -> Array:
-    """How much room [V] the surface has beneath it, from 0 (a body) to 1."""
+    """How much room [V] the surface has beneath it, from 0 (a body) to 1; none where a hand holds it.
+
+    Grips reach into arms, and several weapons may share a hand: no line sees them.
+    """
     skeleton, faces = character.skeleton, character.mesh.faces
+    held = _moved_by(_below_hands(character), character)[faces].min(axis=1) > HELD
+    faces = faces if held.all() else faces[~held]
     found, legs = roles(skeleton, character.roles), np.zeros(len(faces), int)
     for side, mark in (("left", 1), ("right", 2)):
         moved = np.zeros(len(skeleton.names))
@@ -83,12 +94,3 @@ def _of_body(character: Character) -> Array:
         if body[joint] and skeleton.parents[joint] >= 0:
             body[skeleton.parents[joint]] = True
     return body & ~_firm(character)
-
-
-def _in_small_pieces(vertices: Array, graph: sparse.csr_matrix) -> Array:
-    """Whether each vertex [V] belongs to a separate piece of the mesh of little extent."""
-    pieces, piece = csgraph.connected_components(graph, directed=False)
-    low, high = np.full((pieces, 3), np.inf), np.full((pieces, 3), -np.inf)
-    np.minimum.at(low, piece, vertices)
-    np.maximum.at(high, piece, vertices)
-    return np.asarray(((high - low).max(axis=1) < SMALL * figure_scale(vertices))[piece])
