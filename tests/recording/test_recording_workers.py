@@ -20,7 +20,7 @@ from mua.errors import InputError
 from mua.pose.clip import Clip
 from mua.pose.skeleton import Pose
 from mua.recording import workers
-from mua.recording.parts import is_joined, join_parts, record_share
+from mua.recording.parts import divide, is_joined, join_parts, record_share, share
 from mua.recording.workers import record_by_workers
 from mua.rig.rig import Rig
 from mua.teacher import TeacherFrame
@@ -201,10 +201,16 @@ def test_a_damaged_recording_is_reported_and_recorded_again(alone: Path, tmp_pat
 
 @pytest.mark.usefixtures("forked")
 def test_what_an_undisturbed_run_left_is_not_recorded_anew(alone: Path, tmp_path: Path) -> None:
+    """Its finished parts are handed to no worker: there are only as many workers as parts are left."""
     directory, teacher = tmp_path / "r", FormulaTeacher(synthetic_rig())
     record_share(teacher, plan(teacher.rig), directory, rank=0, count=2, rate=RATE)  # the parts of one of two
+    parts = divide(plan(teacher.rig))
+    finished = share(parts, 0, 2)
+    done = sum(len(clip.wanted) for part in finished for clip in parts[part])
     notes: list[str] = []
-    run(directory, FormulaTeacher, jobs=1, note=notes.append)
+    heard: list[tuple[int, int]] = []
+    run(directory, FormulaTeacher, jobs=len(parts), note=notes.append, progress=lambda *now: heard.append(now))
+    assert heard[0] == (done, len(parts) - len(finished))
     run(directory, FormulaTeacher, note=notes.append)
     assert notes == []
     assert content(directory) == content(alone)
