@@ -2,6 +2,7 @@
 
 import gc
 import os
+import sys
 from collections.abc import Generator, Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -130,11 +131,12 @@ def _fork_server() -> Iterator["socket.socket"]:
 
 
 @pytest.fixture
-def forked(monkeypatch: pytest.MonkeyPatch, _fork_server: "socket.socket") -> None:
-    """Processes that record are forked, for tests that do not look at how they are started."""
+def forked(monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest) -> None:
+    """Processes that record are forked on Linux, for tests that do not look at how they are started."""
     from forked_workers import fork_workers  # here, because few tests need torch
 
-    fork_workers(monkeypatch, _fork_server)
+    if sys.platform == "linux":
+        fork_workers(monkeypatch, request.getfixturevalue("_fork_server"))
 
 
 @pytest.fixture
