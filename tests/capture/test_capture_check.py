@@ -35,7 +35,7 @@ def _kept_outlines() -> Iterator[None]:
     drawn: dict[bytes, Array] = {}
     draw = outline.fine_silhouette
 
-    def kept(*asked: object) -> Array:
+    def kept(*asked: Any) -> Array:
         key = hashlib.sha256(pickle.dumps(asked)).digest()
         if key not in drawn:
             drawn[key] = draw(*asked)
