@@ -2,6 +2,7 @@
 
 import gc
 import os
+import sys
 from collections.abc import Generator, Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -21,6 +22,8 @@ from mua.asset import write
 from mua.pose.clip import Clip
 
 if TYPE_CHECKING:
+    import socket
+
     from trainings import Training
 
     from mua.capture import Capture
@@ -117,6 +120,23 @@ def _kept_atlases() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         keep_atlases(patch)
         yield
+
+
+@pytest.fixture(scope="session")
+def _fork_server() -> Iterator["socket.socket"]:
+    from forked_workers import fork_server  # here, because few tests need torch
+
+    with fork_server() as server:
+        yield server
+
+
+@pytest.fixture
+def forked(monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest) -> None:
+    """Processes that record are forked on Linux, for tests that do not look at how they are started."""
+    from forked_workers import fork_workers  # here, because few tests need torch
+
+    if sys.platform == "linux":
+        fork_workers(monkeypatch, request.getfixturevalue("_fork_server"))
 
 
 @pytest.fixture

@@ -21,6 +21,8 @@ from mua.rig.charts import areas
 from mua.rig.texel_map import build_texel_map
 from mua.scene import Material
 
+pytestmark = pytest.mark.usefixtures("first_try")
+
 JOINTS = ("Hips", "Head", "LeftEye", "LeftHand", "LeftHandIndex1")
 PARENTS = (-1, 0, 1, 0, 3)
 CELLS = 20

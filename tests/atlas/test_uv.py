@@ -1,7 +1,6 @@
-"""Atlases of small made surfaces, whose every texel has a known colour, and of a real character."""
+"""Atlases of small made surfaces, whose every texel has a known colour."""
 
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,10 +11,11 @@ from scipy import ndimage
 from mua.atlas.bake_texture import bake_texture
 from mua.atlas.chart_quality import isometric
 from mua.atlas.uv import build_atlas
-from mua.characters.read import read_surfaces
 from mua.rig.charts import areas, find_charts, signed_areas
 from mua.rig.texel_map import build_texel_map
 from mua.scene import Material, Wrap
+
+pytestmark = pytest.mark.usefixtures("first_try")
 
 ROUNDED = 1  # a colour of a linear ramp is exact before it is rounded to a byte, once in the ramp and once in the atlas
 LENGTH_BOUND = 1e-9  # float64 of metres through a handful of products and an eigendecomposition
@@ -236,28 +236,3 @@ def test_a_picture_finer_than_the_atlas_is_averaged_without_the_colour_of_what_i
     texels, colours = texels_and_colours(character)
     of_checks = points(character, texels)[:, 0] < 1.5
     np.testing.assert_allclose(colours[of_checks], [[90, 60, 30, 127]] * of_checks.sum(), atol=ROUNDED)
-
-
-def test_real_character_gets_an_atlas_of_few_charts_without_overlap(shared_data: Any) -> None:
-    path: Path = shared_data.path("characters/White_F_3_Casual.glb")
-    character = build_atlas(read_surfaces(path), uv="auto", size=256)
-    texels = build_texel_map(character.mesh, 384)
-    assert texels.claimed_twice < 0.002 * len(texels.texels)
-    assert len(texels.texels) > 0.6 * 384**2
-    assert "triangles overlap, are distorted or have next to no texels" in character.notes[-1]
-
-
-@pytest.mark.parametrize("name", ["lumberjack", "Fox"])
-def test_keep_leaves_real_characters_without_overlap_as_they_are(shared_data: Any, name: str) -> None:
-    surfaces = read_surfaces(shared_data.path(f"characters/{name}.glb"))
-    character = build_atlas(surfaces, uv="keep", size=256)
-    assert character.base_color is surfaces.materials[0].image
-    assert np.array_equal(character.mesh.uv[character.mesh.uv_faces], surfaces.uv[surfaces.uv_faces])
-
-
-@pytest.mark.parametrize("name", ["lumberjack", "Fox"])
-def test_real_characters_have_more_texels_than_in_their_own_layout(shared_data: Any, name: str) -> None:
-    surfaces = read_surfaces(shared_data.path(f"characters/{name}.glb"))
-    own, packed = (build_texel_map(build_atlas(surfaces, uv=uv, size=256).mesh, 384) for uv in ("keep", "auto"))
-    assert len(packed.texels) > 1.05 * len(own.texels)
-    assert packed.claimed_twice <= own.claimed_twice

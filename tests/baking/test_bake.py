@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from commands import Commands, Ended, process
+from commands import Commands
 from gltf_files import animate, body
 from PIL import Image
 from recordings import content
@@ -88,6 +88,7 @@ def test_the_range_of_motion_is_trained_on_and_nothing_else(baked: Baked) -> Non
     assert (own[1] < box[1]).any()
 
 
+@pytest.mark.usefixtures("forked")
 def test_without_the_range_the_same_is_recorded_of_the_users_motion(
     baked: Baked, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -142,6 +143,7 @@ def test_baselines_stand_in_the_only_possible_order(baked: Baked) -> None:
         assert errors.rms(attribute, "bands") < errors.rms(attribute, "best") < errors.rms(attribute, "mean")
 
 
+@pytest.mark.usefixtures("forked")
 def test_one_worker_and_several_leave_the_same_bytes(baked: Baked, tmp_path: Path) -> None:
     bake(BakeSettings(tmp_path / "a.muaavatar", tmp_path / "work", SMALL, "cpu", jobs=2), Silent())
     (mine,), (theirs,) = (list(path.glob("recording-*")) for path in (tmp_path / "work", baked.output.parent / "work"))
@@ -206,11 +208,11 @@ def test_a_recording_of_another_surface_is_not_taken_for_this_one(tmp_path: Path
 def refused(command: Commands, tmp_path: Path) -> Callable[..., str]:
     """The sentence that mua-bake ends with; an earlier result must survive and nothing new be left."""
 
-    def run(*arguments: object, bake: Callable[..., Ended] = command) -> str:
+    def run(*arguments: object) -> str:
         output = tmp_path / "out.muaavatar"
         output.write_bytes(b"an earlier result")
         before = sorted(tmp_path.iterdir())
-        ended = bake("bake", *arguments, "-o", output)
+        ended = command("bake", *arguments, "-o", output)
         assert output.read_bytes() == b"an earlier result"
         assert sorted(tmp_path.iterdir()) == before
         return ended.sentence
@@ -297,4 +299,4 @@ def test_killed_bake_ends_in_the_same_bytes(baked: Baked, tmp_path: Path) -> Non
 
 def test_a_command_is_refused_where_another_is_at_work(tmp_path: Path, refused: Callable[..., str]) -> None:
     with DirectoryLock(tmp_path / "out.work", name="the other"):
-        assert f"--work {tmp_path / 'out.work'}: process {os.getpid()} is using it" in refused(bake=process)
+        assert f"--work {tmp_path / 'out.work'}: process {os.getpid()} is using it" in refused()

@@ -31,7 +31,7 @@ def small(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(STUDENTS, "tiny", replace(student, regression=few, finetune=few, sweeps=1))
 
 
-@pytest.mark.usefixtures("small")
+@pytest.mark.usefixtures("small", "forked")
 def test_a_capture_becomes_an_avatar_and_so_does_its_teacher(capture: Path, tmp_path: Path, command: Commands) -> None:
     given = ("--preset", "tiny", "--jobs", "1")
     motion = capture / "walk.bvh"

@@ -51,7 +51,7 @@ RANDOM_POSES = 8
 LOST = 0.03  # of what the best coefficients would explain, by the MLPs' own on training frames
 
 
-@pytest.mark.usefixtures("untimed")
+@pytest.mark.usefixtures("untimed", "forked")
 def test_student_explains_its_teacher_and_looks_like_it(tmp_path: Path, device: Device) -> None:
     """As `make demo` bakes it. One test, since workers bake each for themselves."""
     demo = replace(preset("tiny"), frames=FRAMES)

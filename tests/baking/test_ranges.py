@@ -86,6 +86,7 @@ def test_a_character_with_animation_keeps_to_it(tmp_path: Path) -> None:
     assert ([clip.name for clip in clips], notes) == (["own"], [])
 
 
+@pytest.mark.usefixtures("forked")
 def test_a_file_without_animation_is_baked_played_and_compared_with_its_source(tmp_path: Path) -> None:
     notes: list[str] = []
 

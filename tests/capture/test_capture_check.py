@@ -1,7 +1,9 @@
 """mua-capture check: what is right passes, and each thing that cannot be right has its sentence."""
 
+import hashlib
+import pickle
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from itertools import product
 from pathlib import Path
@@ -15,7 +17,7 @@ from PIL import Image
 from scipy.ndimage import distance_transform_edt
 
 from mua.arrays import Array
-from mua.capture import Capture, sheet, write_capture
+from mua.capture import Capture, camera_fit, outline, sheet, write_capture
 from mua.capture.camera import CaptureCamera
 from mua.capture.check import Checked, check_capture
 from mua.capture.fit import Posed, Seen, chosen_frames, look_at
@@ -25,6 +27,24 @@ from mua.player.video import write_video
 
 OPENGL = np.diag([1.0, -1, -1, 1])
 Z_UP = np.array([[1.0, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]])  # from our world to one with Z up
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _kept_outlines() -> Iterator[None]:
+    """Outlines of the same vertices in the same camera are drawn once: captures here differ in few views."""
+    drawn: dict[bytes, Array] = {}
+    draw = outline.fine_silhouette
+
+    def kept(*asked: Any) -> Array:
+        key = hashlib.sha256(pickle.dumps(asked)).digest()
+        if key not in drawn:
+            drawn[key] = draw(*asked)
+        return drawn[key]
+
+    with pytest.MonkeyPatch.context() as patch:
+        for module in (outline, camera_fit):
+            patch.setattr(module, "fine_silhouette", kept)
+        yield
 
 
 @pytest.fixture

@@ -1,6 +1,7 @@
 """Commands answer before they load what takes seconds, and all have --version and --quiet."""
 
 import importlib.metadata
+import json
 import runpy
 import sys
 from pathlib import Path
@@ -41,23 +42,33 @@ SLOW = (
     "adbutils",
 )
 RUN = """
-sys.argv[0] = "mua-{name}"
-try:
-    from mua.cli.{name} import run
-    run()
-finally:
-    loaded = sorted(set({slow}) & set(sys.modules))
-    if loaded:
-        print("loaded:", loaded)
+import contextlib, io, json
+answers = []
+for line in json.loads(sys.argv[1]):
+    sys.argv[:] = ["mua-{name}", *line]
+    with contextlib.redirect_stdout(io.StringIO()) as out, contextlib.redirect_stderr(io.StringIO()) as err:
+        try:
+            from mua.cli.{name} import run
+            run()
+        except SystemExit as ended:
+            status = ended.code or 0
+        loaded = sorted(set({slow}) & set(sys.modules))
+        if loaded:
+            print("loaded:", loaded)
+    answers.append((status, out.getvalue(), err.getvalue()))
+print(json.dumps(answers))
 """
 
 
 ACTIONS = {"capture": ("check",)}  # of commands that do several things
 
 
-def started(name: str, *arguments: str | Path) -> Ended:
-    """A command in a process of its own; it prints what it loaded of all that is slow to load."""
-    return python(RUN.format(name=name, slow=SLOW), *ACTIONS.get(name, ()), *arguments)
+def started(name: str, *lines: tuple[str | Path, ...]) -> list[Ended]:
+    """A command with each of some lines of arguments, in a process of its own; it prints what it loaded of SLOW."""
+    given = json.dumps([[*ACTIONS.get(name, ()), *map(str, line)] for line in lines])
+    ended = python(RUN.format(name=name, slow=SLOW), given)
+    assert (ended.status, ended.err) == (0, "")
+    return [Ended(*answer) for answer in json.loads(ended.out)]
 
 
 def refused(ended: Ended) -> str:
@@ -67,36 +78,39 @@ def refused(ended: Ended) -> str:
 
 
 @pytest.mark.parametrize("name", COMMANDS)
-def test_a_wrong_name_is_refused_before_anything_is_loaded(name: str, tmp_path: Path) -> None:
+def test_a_wrong_name_version_and_help_are_answered_before_anything_is_loaded(name: str, tmp_path: Path) -> None:
     absent = tmp_path / "absent.muaavatar"
     kind = "directory" if name in ("capture", "eval", "teach", "train") else "file"
-    assert refused(started(name, absent)) == f"{absent}: there is no such {kind}"
+    wrong, version, shown = started(name, (absent,), ("--version",), ("--help",))
+    assert refused(wrong) == f"{absent}: there is no such {kind}"
+    assert version == Ended(0, f"mua-{name} {mua.__version__}\n", "")
+    assert shown.status == 0
+    assert "--version" in shown.out
+    assert "--quiet" in shown.out
+    assert "loaded:" not in shown.out
 
 
 @pytest.mark.parametrize("name", ["bench", "deploy", "export", "inspect", "pack", "share", "view"])
 def test_a_directory_in_place_of_a_file_is_told_likewise(name: str, tmp_path: Path) -> None:
-    assert refused(started(name, tmp_path)) == f"{tmp_path}: is a directory, expected a file"
+    (ended,) = started(name, (tmp_path,))
+    assert refused(ended) == f"{tmp_path}: is a directory, expected a file"
 
 
 @pytest.mark.parametrize("name", ["eval", "train"])
 def test_what_is_no_recording_is_told_likewise(name: str, tmp_path: Path) -> None:
-    assert refused(started(name, tmp_path)) == f"{tmp_path}: not a recording, it holds no {layout.HEADER}"
     file = tmp_path / "file"
     file.touch()
-    assert refused(started(name, file)) == f"{file}: is a file, expected the directory of a recording"
+    empty, no_directory = started(name, (tmp_path,), (file,))
+    assert refused(empty) == f"{tmp_path}: not a recording, it holds no {layout.HEADER}"
+    assert refused(no_directory) == f"{file}: is a file, expected the directory of a recording"
     assert inputs.HEADER == layout.HEADER
 
 
 @pytest.mark.parametrize("name", ["bake", "export", "view"])
 def test_absent_motion_is_told_likewise(name: str, tmp_path: Path, avatar_file: Path) -> None:
     absent = tmp_path / "walks"
-    sentence = refused(started(name, avatar_file, "--motion", absent))
-    assert sentence == f"--motion {absent}: there is no such file or directory"
-
-
-@pytest.mark.parametrize("name", COMMANDS)
-def test_says_its_version_without_its_arguments(name: str) -> None:
-    assert started(name, "--version").out == f"mua-{name} {mua.__version__}\n"
+    (ended,) = started(name, (avatar_file, "--motion", absent))
+    assert refused(ended) == f"--motion {absent}: there is no such file or directory"
 
 
 @pytest.mark.parametrize("name", COMMANDS)
@@ -113,19 +127,12 @@ def test_the_version_is_that_of_the_installation() -> None:
     assert importlib.metadata.version("mua") == mua.__version__
 
 
-@pytest.mark.parametrize("name", COMMANDS)
-def test_help_names_the_common_options_and_loads_nothing(name: str) -> None:
-    ended = started(name, "--help")
-    assert ended.status == 0
-    assert "--version" in ended.out
-    assert "--quiet" in ended.out
-    assert "loaded:" not in ended.out
-
-
 def test_quiet_prints_nothing_but_errors(avatar_file: Path, tmp_path: Path) -> None:
-    assert "metres" in started("inspect", avatar_file).out
-    assert started("inspect", "--quiet", avatar_file) == Ended(0, "", "")
-    assert refused(started("inspect", "--quiet", tmp_path / "absent"))
+    absent = tmp_path / "absent"
+    shown, quiet, wrong = started("inspect", (avatar_file,), ("--quiet", avatar_file), ("--quiet", absent))
+    assert "metres" in shown.out
+    assert quiet == Ended(0, "", "")
+    assert refused(wrong)
 
 
 @pytest.mark.parametrize(

@@ -121,12 +121,12 @@ def bend(texture: Array, corners: Array, barycentrics: Array, faces: Array, v: A
             continue
         g = normalise(summed([b * turn for b, _, turn, _ in held]))
         p = np.sum([b * stretch for b, _, _, stretch in held], axis=0) / whole
-        bent[e, 0:3] = columns(g) @ texture[e, 0:3]
+        turn, axes = columns(g), columns(normalise(texture[e, 3:7]))
+        bent[e, 0:3] = turn @ texture[e, 0:3]
         bent[e, 3:7] = multiply(g, texture[e, 3:7])
-        stretch = np.linalg.norm(p @ columns(normalise(texture[e, 3:7])), axis=0)
-        bent[e, 7:10] += np.log(np.clip(stretch, 1 / LARGEST, LARGEST))
-        normal = columns(normalise(texture[e, 3:7]))[:, 2]
+        bent[e, 7:10] += np.log(np.clip(np.linalg.norm(p @ axes, axis=0), 1 / LARGEST, LARGEST))
+        normal = axes[:, 2]
         for c in range(3):
             a = texture[e, [20 + c, 14 + c, 17 + c]] * [-1, -1, 1]
-            bent[e, [20 + c, 14 + c, 17 + c]] = [-1, -1, 1] * mirror(columns(g) @ normal, mirror(normal, a))
+            bent[e, [20 + c, 14 + c, 17 + c]] = [-1, -1, 1] * mirror(turn @ normal, mirror(normal, a))
     return bent

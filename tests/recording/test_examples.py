@@ -1,12 +1,13 @@
 """The programs of docs/examples run as they stand."""
 
-import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 import torch
+from commands import Commands
 from examples import EXAMPLES, load_example
 from PIL import Image
 from python_blocks import python_blocks
@@ -16,12 +17,22 @@ from mua.pose.clip import Clip
 from mua.recording import Recording, TeacherWriter
 
 
-def test_a_teacher_of_ones_own_is_recorded_trained_and_seen(tmp_path: Path) -> None:
-    done = subprocess.run(
-        [sys.executable, str(EXAMPLES / "own_teacher.py"), str(tmp_path)], check=False, capture_output=True, text=True
-    )
-    assert done.returncode == 0, done.stderr
-    assert "no mistake in units or conventions was found" in done.stdout
+def test_a_teacher_of_ones_own_is_recorded_trained_and_seen(
+    tmp_path: Path, command: Commands, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its commands run in this process, which has loaded what they load."""
+    example, said = load_example("own_teacher"), []
+
+    def run(line: list[str], *, check: bool) -> None:
+        assert (line[:3], check) == ([sys.executable, "-m", "mua.cli.train"], True)
+        ended = command("train", *line[3:])
+        assert ended.status == 0, ended.err
+        said.append(ended.out)
+
+    monkeypatch.setattr(example, "subprocess", SimpleNamespace(run=run))
+    monkeypatch.setattr(sys, "argv", ["own_teacher.py", str(tmp_path)])
+    example.main()
+    assert "no mistake in units or conventions was found" in said[0]
     assert (tmp_path / "figure_check.png").is_file()
     assert [clip.name for clip in read(tmp_path / "figure.muaavatar").clips] == ["wave", "bow", "both"]
     picture = np.asarray(Image.open(tmp_path / "figure.png").convert("RGB"))

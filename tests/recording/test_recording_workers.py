@@ -10,6 +10,7 @@ import time
 from collections.abc import Container, Iterator
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import pytest
 from recordings import RATE, FormulaTeacher, content, plan
@@ -19,7 +20,7 @@ from mua.errors import InputError
 from mua.pose.clip import Clip
 from mua.pose.skeleton import Pose
 from mua.recording import workers
-from mua.recording.parts import is_joined, join_parts, record_share
+from mua.recording.parts import divide, is_joined, join_parts, record_share, share
 from mua.recording.workers import record_by_workers
 from mua.rig.rig import Rig
 from mua.teacher import TeacherFrame
@@ -89,7 +90,11 @@ def run(directory: Path, teacher: type[FormulaTeacher], *arguments: object, **mo
 
 
 @pytest.mark.parametrize("jobs", [1, 2])
-def test_any_number_of_workers_leaves_the_same_files(alone: Path, tmp_path: Path, jobs: int) -> None:
+def test_any_number_of_workers_leaves_the_same_files(
+    alone: Path, tmp_path: Path, jobs: int, request: pytest.FixtureRequest
+) -> None:
+    if jobs == 1:
+        request.getfixturevalue("forked")  # the others are started as a bake starts them
     heard: list[tuple[int, int]] = []
     run(tmp_path / "r", FormulaTeacher, jobs=jobs, progress=lambda done, working: heard.append((done, working)))
     assert content(tmp_path / "r") == content(alone)
@@ -100,6 +105,7 @@ def test_any_number_of_workers_leaves_the_same_files(alone: Path, tmp_path: Path
     assert sorted(heard) == heard
 
 
+@pytest.mark.usefixtures("forked")
 def test_everything_is_on_the_disk_once_the_parts_are_joined(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Workers do not wait for it."""
     fsync, synced = os.fsync, set()
@@ -113,6 +119,7 @@ def test_everything_is_on_the_disk_once_the_parts_are_joined(tmp_path: Path, mon
     assert {path.stat().st_ino for path in (tmp_path, tmp_path / "r", *(tmp_path / "r").rglob("*"))} <= synced
 
 
+@pytest.mark.usefixtures("forked")
 def test_a_killed_worker_is_reported_and_the_next_run_ends_in_the_same_files(alone: Path, tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"a process that records was ended by signal 9, perhaps for want of memory"):
         run(tmp_path / "r", Dying, tmp_path / "flag")
@@ -122,6 +129,7 @@ def test_a_killed_worker_is_reported_and_the_next_run_ends_in_the_same_files(alo
     assert content(tmp_path / "r") == content(alone)
 
 
+@pytest.mark.usefixtures("forked")
 def test_what_a_worker_refuses_is_its_sentence(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"^clip 'walk': a texel is not finite$"):
         run(tmp_path / "r", Refusing, tmp_path / "flag", jobs=1)
@@ -134,6 +142,7 @@ def ended(process: int) -> bool:
         return True
 
 
+@pytest.mark.usefixtures("forked")  # the last run; the killed one starts its own
 @pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="looks for the worker in /proc, which Linux has")
 def test_workers_end_with_a_killed_parent_and_the_next_run_ends_in_the_same_files(alone: Path, tmp_path: Path) -> None:
     flag = tmp_path / "flag"
@@ -153,25 +162,26 @@ def test_workers_end_with_a_killed_parent_and_the_next_run_ends_in_the_same_file
     assert content(tmp_path / "r") == content(alone)
 
 
+@pytest.mark.usefixtures("forked")
 def test_an_interrupt_ends_all_workers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    started: list[subprocess.Popen[bytes]] = []
+    popen, started = workers.subprocess.Popen, []
 
-    class Popen(subprocess.Popen):
-        def __init__(self, *arguments, **more) -> None:  # type: ignore[no-untyped-def]
-            super().__init__(*arguments, **more)
-            started.append(self)
+    def start(*arguments: Any, **more: Any) -> Any:
+        started.append(popen(*arguments, **more))
+        return started[-1]
 
     def interrupt(done: int, working: int) -> None:
         if done:
             raise KeyboardInterrupt
 
-    monkeypatch.setattr(workers.subprocess, "Popen", Popen)
+    monkeypatch.setattr(workers.subprocess, "Popen", start)
     with pytest.raises(KeyboardInterrupt):
         run(tmp_path / "r", Waiting, tmp_path / "flag", progress=interrupt)
     assert len(started) == 2
     assert all(process.poll() is not None for process in started)
 
 
+@pytest.mark.usefixtures("forked")
 @pytest.mark.parametrize("joined", [True, False])
 def test_a_damaged_recording_is_reported_and_recorded_again(alone: Path, tmp_path: Path, joined: bool) -> None:
     directory, teacher = tmp_path / "r", FormulaTeacher(synthetic_rig())
@@ -189,11 +199,18 @@ def test_a_damaged_recording_is_reported_and_recorded_again(alone: Path, tmp_pat
     assert content(directory) == content(alone)
 
 
+@pytest.mark.usefixtures("forked")
 def test_what_an_undisturbed_run_left_is_not_recorded_anew(alone: Path, tmp_path: Path) -> None:
+    """Its finished parts are handed to no worker: there are only as many workers as parts are left."""
     directory, teacher = tmp_path / "r", FormulaTeacher(synthetic_rig())
     record_share(teacher, plan(teacher.rig), directory, rank=0, count=2, rate=RATE)  # the parts of one of two
+    parts = divide(plan(teacher.rig))
+    finished = share(parts, 0, 2)
+    done = sum(len(clip.wanted) for part in finished for clip in parts[part])
     notes: list[str] = []
-    run(directory, FormulaTeacher, jobs=1, note=notes.append)
+    heard: list[tuple[int, int]] = []
+    run(directory, FormulaTeacher, jobs=len(parts), note=notes.append, progress=lambda *now: heard.append(now))
+    assert heard[0] == (done, len(parts) - len(finished))
     run(directory, FormulaTeacher, note=notes.append)
     assert notes == []
     assert content(directory) == content(alone)
