@@ -3,6 +3,7 @@
 from dataclasses import replace
 from pathlib import Path
 
+import gltf_files
 import numpy as np
 import pytest
 from column_files import column_file
@@ -16,6 +17,7 @@ from mua.baking.contact_sheet import CELL
 from mua.baking.pipeline import bake
 from mua.baking.ranges import clips_of, planned_range, range_frames, settings_for
 from mua.baking.settings import BakeSettings, MotionRange
+from mua.baking.sources import load_character
 from mua.errors import InputError
 from mua.fidelity.strips import CAPTION
 from mua.pose.clip import Clip, is_range
@@ -56,6 +58,27 @@ def test_frames_are_recorded_of_all_clips_of_the_range_and_none_kept_whole(tmp_p
 
 def test_nothing_is_recorded_of_a_range_that_is_not_asked_for(tmp_path: Path) -> None:
     assert planned_range(bake_settings(tmp_path, motion_range="none"), character(RIGS["T-pose"]), (), 240) == []
+
+
+def test_the_pose_in_which_a_file_stands_is_recorded_of_joints_that_the_range_moves(tmp_path: Path) -> None:
+    """All other joints would widen the description of every pose."""
+    glb, bent = gltf_files.body(), [0, 0, np.sin(0.3), np.cos(0.3)]
+    glb.json["nodes"][1]["rotation"] = bent
+    glb.json["nodes"][2]["children"] = [4]
+    glb.json["nodes"].append({"name": "tip", "translation": [0, 0.5, 0], "rotation": bent})
+    binds = np.tile(np.eye(4), (4, 1, 1))
+    binds[:, 3, 1] = [0, -0.5, -1, -1.5]
+    glb.json["skins"] = [{"joints": [0, 1, 2, 4], "inverseBindMatrices": glb.accessor(binds)}]
+    figure = load_character(glb.save(tmp_path / "bent.glb"), uv="auto", seed=0)
+    (*others, standing) = planned_range(bake_settings(tmp_path), figure, (), 240)
+    assert is_range(standing.clip.name)
+    assert (len(standing.clip), standing.wanted, standing.held_out) == (1, {0}, False)
+    turns = {name: standing.clip.rotations[0, joint] for joint, name in enumerate(figure.skeleton.names)}
+    np.testing.assert_allclose(abs(turns["spine"] @ [bent[3], *bent[:3]]), 1, atol=1e-6)
+    still = others[0].clip.rotations[0, figure.skeleton.names.index("tip")]
+    assert np.array_equal(turns["tip"], still)
+    assert abs(still @ [bent[3], *bent[:3]]) < 0.99
+    assert sum(len(clip.wanted) for clip in others) == 75
 
 
 def test_a_person_without_animation_has_the_range_as_its_motion(tmp_path: Path) -> None:

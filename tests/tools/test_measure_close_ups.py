@@ -1,11 +1,12 @@
 """Close-ups of a character: which parts are shown, and what counts as a fringe."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 import still_splats
-from measure_close_ups import main, measured, unlit
+from measure_close_ups import main, measured, moments, surface_of, unlit
 from PIL import Image
 from shared_data import SharedData
 
@@ -88,3 +89,21 @@ def test_a_student_is_compared_in_the_colours_of_the_splats(shared_data: SharedD
     found = unlit(student, teacher, shown.texture, moment)
     np.testing.assert_array_equal(found.sh, shown.texture[:, ATTRIBUTES["SH"]])
     np.testing.assert_array_equal(found.centres, student.centres)
+
+
+def test_a_surface_hangs_off_its_joints_where_it_is_loose_and_nowhere_else(
+    shared_data: SharedData, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = shared_data.path("characters/lumberjack.glb")
+    character = load_character(path, uv="auto", seed=0)
+    ((moment, clip, at),) = moments(character, [])
+    loose = np.zeros(len(character.mesh.vertices), np.float32)
+    loose[: len(loose) // 2] = 1
+    of_two = (surface_of(replace(character, looseness=loose), moment, clip, at, hanging=one) for one in (False, True))
+    skinned, hanging = (surface.places for surface in of_two)
+    apart = np.linalg.norm(hanging - skinned, axis=1)
+    assert np.quantile(apart[loose == 1], 0.9) > 0.003
+    assert np.median(apart[loose == 0]) < 1e-6
+    main([str(path), "--texels", "64", "--size", "96", "--steps", "0", "--hanging", "-o", str(tmp_path)])
+    psnr, bound = (float(text.split()[-1]) for text in capsys.readouterr().out.splitlines()[0].split(" dB")[:2])
+    assert 15 < psnr < bound

@@ -16,11 +16,15 @@ and the background: a fringe. The bound, after "of", is the PSNR of the surface 
 many texels. The splats are fitted to the source first, in poses of the built-in range of motion, as a bake fits them.
 With --before the splats that still_splats.py kept of another commit are drawn next to the source, and their figures
 come first.
+
+With --hanging the source is its surface as loose parts hang in the simulated teacher, under the character's atlas, and
+the splats lie on it: cloth that hangs beside where the file's joints have it then is no fringe.
 """
 
 import argparse
 from collections.abc import Iterator, Sequence
 from dataclasses import astuple, dataclass, fields
+from itertools import islice
 from pathlib import Path
 
 import flip_evaluator
@@ -52,8 +56,9 @@ from mua.pose.encoding import RATE
 from mua.rig.body_parts import BODY_PARTS, body_parts
 from mua.rig.character import Character
 from mua.scene import Material, Part
+from mua.teachers.simulated.simulated_surface import SimulatedSurface
 from mua.teachers.simulated.still import StillTeacher
-from mua.teachers.simulated.surface import SkinnedSurface
+from mua.teachers.simulated.surface import MovedSurface, SkinnedSurface
 
 GREY = 0.5
 BORDER, FRINGE = 0.02, 0.01  # metres about an open border, and outside the silhouette
@@ -158,11 +163,19 @@ def moments(character: Character, motion: Sequence[Path]) -> Iterator[tuple[Mome
         yield rest, Clip(rest.name, RATE, rest.pose.rotations[None], rest.pose.translations[None]), 0
 
 
-def as_textured(character: Character, texels: int) -> tuple[Part, Material]:
+def surface_of(character: Character, moment: Moment, clip: Clip, at: int, *, hanging: bool) -> MovedSurface:
+    """The surface in a frame of a clip: skinned, or as its loose parts hang after the frames before it."""
+    if hanging:
+        return next(islice(SimulatedSurface(character).frames(clip), at, None))
+    joints = character.skeleton.skinning(moment.pose.rotations, moment.pose.translations)
+    return SkinnedSurface(character).posed(joints, moment.stretches)
+
+
+def as_textured(character: Character, texels: int) -> tuple[list[Part], list[Material]]:
     """The surface as one part, and its atlas averaged to so many texels."""
     mesh, unused = character.mesh, np.zeros((len(character.mesh.vertices), 1))
     part = Part("surface", 0, mesh.vertices, mesh.faces, mesh.uv, mesh.uv_faces, 0, 0, unused.astype(int), unused)
-    return part, Material("atlas", reduced(character.base_color, len(character.base_color) // texels))
+    return [part], [Material("atlas", reduced(character.base_color, len(character.base_color) // texels))]
 
 
 def kept_splats(file: Path) -> Splats:
@@ -188,6 +201,7 @@ def close_ups(
     avatar: Avatar | None,
     fit: Path | None,
     motion: Sequence[Path],
+    hanging: bool,
 ) -> Iterator[tuple[str, Array, dict[str, Figures]]]:
     """Each part from each side in each pose: its name, images [size, n size, 3], the figures of all but the source."""
     character = load_character(path, uv="auto", seed=0, detail=read_detail((), uv="auto"))
@@ -200,22 +214,23 @@ def close_ups(
     elif steps:
         corrections = fitting.fit(character, clips, teacher=teacher, source=character.source, steps=steps)
         teacher = teacher.corrected(corrections)
-    surface = SkinnedSurface(character)
     edges = open_edges(character.mesh.vertices, character.mesh.faces)
-    scene, (part, material) = character.source.scene, as_textured(character, texels)
+    scene = character.source.scene
+    looks = as_textured(character, len(character.base_color)) if hanging else (scene.parts, scene.materials)
     with opened() as context:
-        paint = Painter(context, scene.parts, scene.materials, screen=(size, size))
-        textured, splat = Painter(context, [part], [material], screen=(size, size)), SplatPainter(context, (size, size))
+        paint, textured = (
+            Painter(context, *one, screen=(size, size)) for one in (looks, as_textured(character, texels))
+        )
+        splat = SplatPainter(context, (size, size))
         for moment, clip, at in moments(character, motion):
-            shown = teacher.frame(moment.pose, moment.stretches)
+            surface = surface_of(character, moment, clip, at, hanging=hanging)
+            shown, places = teacher.frame_on(moment.pose, surface), surface.places
             frames = {} if before is None else {"before": kept_splats(before / f"{path.stem}.npz")}
             frames["now"] = pose_splats(teacher.rig, shown.mesh, texture=shown.texture, pose=moment.pose)
             if avatar is not None:
                 frames["avatar"] = decode_clip_frame(avatar, clip, frame=at)
                 frames["unlit"] = unlit(frames["avatar"], teacher, shown.texture, moment)
-            joints = character.skeleton.skinning(moment.pose.rotations, moment.pose.translations)
-            places = surface.posed(joints, moment.stretches).places
-            drawn = [skinned(scene, part, moment.nodes) for part in scene.parts]
+            drawn = [places] if hanging else [skinned(scene, part, moment.nodes) for part in scene.parts]
             for part_name, box in parts_of(character, places):
                 for side, degrees in SIDES.items():
                     camera = orbit(box, screen=(size, size), azimuth=moment.yaw + float(np.radians(degrees)))
@@ -243,6 +258,7 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--avatar", type=Path, help="what was baked from the one character, to be drawn beside it")
     parser.add_argument("--fit", type=Path, help="corrections that the bake of --avatar kept, in place of a fit")
     parser.add_argument("--motion", type=Path, nargs="+", default=[], help="motion files to pose the characters by")
+    parser.add_argument("--hanging", action="store_true", help="compare with the surface as loose parts of it hang")
     parser.add_argument("-o", "--output", type=Path, required=True)
     options = parser.parse_args(arguments)
     options.output.mkdir(parents=True, exist_ok=True)
@@ -260,6 +276,7 @@ def main(arguments: list[str] | None = None) -> None:
             avatar=avatar,
             fit=options.fit,
             motion=options.motion,
+            hanging=options.hanging,
         )
         for name, image, figures in drawn:
             file = options.output / f"{path.stem} {name.replace(', ', ' ')}.png"

@@ -83,7 +83,7 @@ class FacedTeacher(SimulatedTeacher):
 
     def faced(self, pose: Pose, surface: MovedSurface, weights: Array) -> Unposed:
         """The frame with expressions, in canonical space."""
-        frame = self._whole(replace(pose, expressions=weights), surface)
+        frame = self.frame_on(replace(pose, expressions=weights), surface)
         return Unposed(frame.mesh, frame.texture, 0.0)
 
 

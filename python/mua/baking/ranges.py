@@ -1,12 +1,14 @@
 """The built-in range of motion in a bake: what of it is recorded, and which clips are of it."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from mua.baking.plan import plan
 from mua.baking.settings import BakeSettings
 from mua.baking.sources import load_clips
-from mua.motion.range import motion_range
+from mua.characters.rigid_skeleton import rest_pose
+from mua.fidelity.posing import REST
+from mua.motion.range import motion_range, moved_by
 from mua.pose.clip import RANGE_OF_MOTION, Clip
 from mua.recording import PlannedClip
 from mua.rig.character import Character
@@ -43,7 +45,21 @@ def planned_range(
         return []
     count = range_frames(settings.student.frames, frames)
     made = motion_range(character, clips, frames=count, seed=settings.student.seed)
-    return [replace(planned, whole=frozenset()) for planned in plan(made, [], frames=count)]
+    return [replace(one, whole=frozenset()) for one in (*plan(made, [], frames=count), *_standing(character, made))]
+
+
+def _standing(character: Character, made: Sequence[Clip]) -> Iterator[PlannedClip]:
+    """One frame of the pose in which the character's file stands, of the joints that the range moves.
+
+    Other joints are as the range has them, or all poses would be described by more joints for the sake of one.
+    """
+    if character.source is None:
+        return
+    still = made[0].cut(slice(1))
+    rotations, moved = still.rotations.copy(), moved_by(made, range(len(character.skeleton.names)))
+    rotations[0, moved] = rest_pose(character.source, character.skeleton).rotations[moved]
+    clip = replace(still, name=f"{RANGE_OF_MOTION}{REST}", rotations=rotations)
+    yield PlannedClip(clip, held_out=False, wanted=frozenset({0}))
 
 
 def range_frames(asked: int, own: int) -> int:

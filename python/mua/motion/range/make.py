@@ -1,6 +1,6 @@
 """The clips of the built-in range of motion, on a character's own skeleton."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -45,7 +45,7 @@ def motion_range(
     for number in range(max(-(-frames // ROUND), 1)):
         own = np.random.default_rng(rng.integers(2**63))
         if _is_person(skeleton, matches):
-            extra = [j for j in _moved_by(clips, moving) if j != skeleton.root and j not in matches.chains]
+            extra = [j for j in moved_by(clips, moving) if j != skeleton.root and j not in matches.chains]
             found = _person(number, own)
             found = _shortened(found, frames) if short else found
             made += [_put_on(clip, skeleton, matches, rest, extra, own) for clip in found]
@@ -54,6 +54,15 @@ def motion_range(
             found = _any_rig(skeleton, joints, rest, own)
             made += _shortened(found, frames) if short else found
     return unique_names([replace(clip, name=f"{RANGE_OF_MOTION}{clip.name}") for clip in made])
+
+
+def moved_by(clips: Sequence[Clip], joints: Iterable[int]) -> list[int]:
+    """The `joints` that the clips turn."""
+    if not clips:
+        return []
+    turns = np.concatenate([clip.rotations for clip in clips])
+    away = 2 * np.arccos(np.clip(np.abs(np.sum(turns * turns[:1], axis=-1)), 0, 1))
+    return [int(joint) for joint in joints if away[:, joint].max() > STILL]
 
 
 def _shortened(clips: Sequence[Clip], frames: int) -> list[Clip]:
@@ -119,12 +128,3 @@ def _rest(skeleton: Skeleton, clips: Sequence[Clip]) -> Clip:
     aligned = np.where(np.sum(turns * turns[:1], axis=-1, keepdims=True) < 0, -turns, turns)
     places = np.concatenate([clip.translations for clip in clips]).mean(axis=0)
     return Clip("rest", RATE, rotation.normalize(aligned.mean(axis=0))[None], places[None])
-
-
-def _moved_by(clips: Sequence[Clip], joints: Array) -> list[int]:
-    """The `joints` that the clips turn."""
-    if not clips:
-        return []
-    turns = np.concatenate([clip.rotations for clip in clips])
-    away = 2 * np.arccos(np.clip(np.abs(np.sum(turns * turns[:1], axis=-1)), 0, 1))
-    return [int(joint) for joint in joints if away[:, joint].max() > STILL]

@@ -60,10 +60,10 @@ class StillTeacher:
     ) -> TeacherFrame:
         """One pose; its splats turn and stretch with the surface as the simulated ones do."""
         joints = self._character.skeleton.skinning(pose.rotations, pose.translations)
-        return self._whole(pose, self._skinned.posed(joints, stretches))
+        return self.frame_on(pose, self._skinned.posed(joints, stretches))
 
-    def _whole(self, pose: Pose, surface: MovedSurface) -> TeacherFrame:
-        """The complete frame of a pose and its dense surface."""
+    def frame_on(self, pose: Pose, surface: MovedSurface) -> TeacherFrame:
+        """One pose whose joints, and perhaps its cloth, moved the whole surface so."""
         joints, dual, moved = surface.joints, surface.dual, surface.places
         bind = self._character.mesh.vertices
         canonical = transform(rotation.dual_inverse(dual), moved)

@@ -68,7 +68,7 @@ class SimulatedTeacher(StillTeacher):
             yield from (self.frame(pose) if frame in wanted else pose for frame, pose in enumerate(poses))
             return
         for frame, surface in enumerate(self._moving.played(clip)):
-            yield self._whole(clip.pose(frame), surface()) if frame in wanted else clip.pose(frame)
+            yield self.frame_on(clip.pose(frame), surface()) if frame in wanted else clip.pose(frame)
 
     def _lit(self, expressions: Expressions, poses: Sequence[Pose]) -> Expressions:
         """The template's expressions with their gains: how each at 1 changes the light, by least squares over poses."""
