@@ -3,12 +3,15 @@
 from dataclasses import replace
 
 import numpy as np
-from tube import still, tube
+import pytest
+from tube import still, swing, tube
 
 from mua import rotation
 from mua.pose.clip import Clip, Stretches
 from mua.rig.character import Character
+from mua.teachers.simulated import simulated_surface
 from mua.teachers.simulated.simulated_surface import SimulatedSurface
+from mua.teachers.simulated.simulation import Simulation
 from mua.teachers.simulated.surface import SkinnedSurface
 
 SINGLE = 64 * float(np.finfo(np.float32).eps)  # metres; what is simulated in single precision
@@ -40,6 +43,25 @@ def test_what_swings_does_so_at_the_pace_of_the_clip() -> None:
         np.testing.assert_allclose(first.places, second.places, rtol=0, atol=50 * SINGLE)
     behind = np.abs(slow[-1].places - rigid[-1].places).max()
     assert behind > 0.01  # it does swing
+
+
+def test_what_hangs_moves_as_in_a_simulation_of_the_whole(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Only its own part of the surface is simulated; all else is where skinning puts it. Without folds."""
+    monkeypatch.setattr(simulated_surface, "Folds", lambda *_, **__: lambda target, turn: target)
+    character = tube(rings=57, looseness=0.9)
+    upper = character.mesh.vertices[:, 1] > 0.8
+    character = replace(character, looseness=np.where(upper, 0.9, 0.0))
+    surface, clip, mesh = SimulatedSurface(character), swing(character), character.mesh
+    whole = Simulation(mesh.vertices, mesh.faces, looseness=character.looseness, bones=surface.bones)
+    for frame, (moved, rigid) in enumerate(
+        zip(surface.frames(clip), SkinnedSurface(character).frames(clip), strict=True)
+    ):
+        at = rigid.places, rigid.dual[:, :4], surface.bones.posed(rigid.joints)
+        if frame == 0:
+            whole.settle(*at)
+        expected = whole.advance(*at, seconds=1 / clip.rate)
+        np.testing.assert_allclose(moved.places, expected, rtol=0, atol=SINGLE)
+    assert np.abs(moved.places - rigid.places)[upper].max() > 0.01
 
 
 def test_the_seed_chooses_the_folds_alone() -> None:

@@ -12,8 +12,8 @@ from mua.recording import PlannedClip
 
 HELD_SHARE = 5  # without --hold-out, the last fifth of every clip is held out
 HELD_FRAMES = 40  # recorded of each held-out clip at most, all of them whole
-HELD_PART = 4  # all held-out clips together get at most a quarter as many frames as training,
-HELD_MOST = 200  # and no more than this: errors are means over them
+HELD_PART = 4  # all held-out clips together get at most a quarter as many frames as training
+HELD_MOST = 200  # nor more than so many: errors are means over them
 WHOLE_FRAMES = 60  # training frames kept whole to measure the error on
 SHORTEST = 2 * HELD_SHARE  # frames of a clip that is worth cutting
 RUN_UP = 2.0  # seconds before a held-out end that a teacher plays first, so that its cloth is in motion
@@ -61,10 +61,10 @@ def _cut(clips: Sequence[Clip]) -> tuple[list[Clip], list[HeldOut]]:
 
 
 def plan(training: Sequence[Clip], held: Sequence[HeldOut], *, frames: int) -> list[PlannedClip]:
-    """Record `frames` training frames, evenly over all training clips, and up to a quarter as many held-out ones,
-    but no more than HELD_MOST.
+    """Record `frames` training frames, evenly over all training clips, and up to a quarter as many held-out ones.
 
-    Every held-out clip gets its share of these; some get none where there are more clips than frames.
+    These are no more than HELD_MOST. Every held-out clip gets its share of them; some get none where there are more
+    clips than frames.
     """
     if frames < 1:
         raise InputError(f"--frames {frames}: expected at least 1")

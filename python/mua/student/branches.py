@@ -9,6 +9,8 @@ from mua.training.optimise import Progress, Run
 from mua.training.threads import together
 from mua.training.torch_threads import thread_share
 
+PARTS = 2  # of torch's threads: as many tasks take long
+
 
 class Stopped(Exception):
     """Raised in a part whose fit must end because that of another one failed."""
@@ -31,7 +33,7 @@ def fit_apart(tasks: Sequence[Callable[[Run], None]], run: Run) -> None:
             raise Stopped
         run.report(progress)
 
-    with thread_share(2):
+    with thread_share(PARTS):
         together([partial(task, replace(run, report=report)) for task in tasks], stop=stop.set)
 
 

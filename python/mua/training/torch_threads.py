@@ -5,7 +5,7 @@ from contextlib import contextmanager
 
 import torch
 
-FEW = 4
+FEW = 4  # threads, where each needs much memory
 
 
 @contextmanager
