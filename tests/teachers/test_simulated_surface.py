@@ -50,9 +50,10 @@ def test_what_hangs_moves_as_in_a_simulation_of_the_whole(monkeypatch: pytest.Mo
     monkeypatch.setattr(simulated_surface, "Folds", lambda *_, **__: lambda target, turn: target)
     character = tube(rings=57, looseness=0.9)
     upper = character.mesh.vertices[:, 1] > 0.8
-    character = replace(character, looseness=np.where(upper, 0.9, 0.0))
+    looseness = np.where(upper, 0.9, 0.0)
+    character = replace(character, looseness=looseness)
     surface, clip, mesh = SimulatedSurface(character), swing(character), character.mesh
-    whole = Simulation(mesh.vertices, mesh.faces, looseness=character.looseness, bones=surface.bones)
+    whole = Simulation(mesh.vertices, mesh.faces, looseness=looseness, bones=surface.bones)
     for frame, (moved, rigid) in enumerate(
         zip(surface.frames(clip), SkinnedSurface(character).frames(clip), strict=True)
     ):
