@@ -132,6 +132,19 @@ def test_moving_mesh_beside_the_skeleton_is_taken_where_it_is_near(
     assert any("drone" in note for note in surfaces.notes), expected
 
 
+def test_body_around_a_small_skeleton_is_taken_where_one_node_moves_both(tmp_path: Path) -> None:
+    """A robot of which only the face is skinned; a floor of the same size beside it is none of it."""
+    glb = body()
+    glb.json["nodes"].append({"name": "robot", "children": glb.json["scenes"][0]["nodes"]})
+    glb.json["scenes"][0]["nodes"] = [robot := len(glb.json["nodes"]) - 1]
+    turn(glb, robot)
+    block(glb, "shell", at=(0, 0, 0), parent=robot, size=20)
+    turn(glb, block(glb, "floor", at=(0, 0, 0), parent=None, size=20))
+    surfaces = read(glb, tmp_path)
+    assert "Meshes that are attached rigidly to a joint (--leave-out NAME leaves one out): shell." in surfaces.notes
+    assert "Meshes that no joint moves are left out: floor." in surfaces.notes
+
+
 @pytest.mark.parametrize("unit", [1, 100])
 @pytest.mark.parametrize(("along", "taken"), [(1.3, True), (1.7, False)])
 def test_near_is_measured_by_the_skeleton_and_where_a_mesh_truly_lies(

@@ -25,6 +25,8 @@ class Holders:
         self._joints = set(joints)
         self._moved = set(moved) & tree.shown
         self._box = _box(tree.world[sorted(self._joints)][:, :3, 3]) if self._joints else None
+        top = tree.common(self._joints) if self._joints else None
+        self._leads = set() if top is None else self._moved.intersection(tree.upwards(top))  # move all joints
         self._base = None if self._joints else self._base_of_rigid_parts()
 
     def of(self, node: int) -> int | None:
@@ -33,9 +35,8 @@ class Holders:
         if holder is None:
             below_base = self._base is not None and self._base in self._tree.upwards(node)
             return self._base if below_base else None
-        if self._tree.nearest(holder, self._joints) is None and not self._is_near(node):
-            return None
-        return holder
+        led = self._tree.nearest(holder, self._joints | self._leads) is not None
+        return holder if led or self._is_near(node) else None
 
     def _base_of_rigid_parts(self) -> int | None:
         """The lowest node above all meshes that clips move, where nothing is skinned; still meshes below hang on it.
