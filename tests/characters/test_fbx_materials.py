@@ -84,6 +84,17 @@ def test_a_shader_of_its_own_is_read_by_the_name_of_its_property(tmp_path: Path)
     assert found.image[0, 0].tolist() == [10, 60, 200, 100]
 
 
+def test_a_picture_of_the_light_around_is_no_base_colour(tmp_path: Path) -> None:
+    """Maya's Stingray shader comes with a cube map of a sky, which hides the colour where it is taken for it."""
+    fbx, _, body = figure()
+    cloth = fbx.material(body, DiffuseColor=(1, 0, 0))
+    fbx.texture(cloth, FOREIGN, picture((10, 60, 200, 3)), "Maya|TEX_global_diffuse_cube")
+    found, notes = material(fbx, tmp_path)
+    assert found.image[0, 0].tolist() == [255, 0, 0, 255]
+    assert found.alpha_mode == "opaque"
+    assert not notes
+
+
 def test_opacity_0_on_every_material_means_nothing(tmp_path: Path) -> None:
     fbx, _, body = figure()
     fbx.material(body, DiffuseColor=(1, 0, 0), TransparentColor=(1, 1, 1), TransparencyFactor=1.0)

@@ -19,7 +19,7 @@ from mua.scene import Material, Wrap
 WRAPS: dict[int, Wrap] = {int(ufbx.WrapMode.REPEAT): "repeat", int(ufbx.WrapMode.CLAMP): "clamp"}
 LOST = "Textures that are not in the file, beside it or in its folder textures/, so that a plain colour is drawn: {}."
 OPACITY = ("pbr.opacity", "fbx.transparency_color", "fbx.transparency_factor")  # properties with a picture of it
-BASE = re.compile("diffuse|albedo|base_?colou?r|main_?tex", re.IGNORECASE)
+BASE = re.compile("^(?!.*cube).*(diffuse|albedo|base_?colou?r|main_?tex)", re.IGNORECASE)  # a cube is of the light
 GREY = np.array([0.6, 0.6, 0.6, 1.0])  # linear colour of a material that states none
 DEFAULT = Material("default", pictures.flat(GREY), alpha_mode="opaque")  # of faces without a material
 
@@ -123,7 +123,7 @@ def _texture(source: Any, name: str) -> Any | None:
 def _unknown_base(source: Any) -> Any | None:
     """The texture of a shader that ufbx does not know whose property is called as one of the base colour."""
     for texture in items(source, "textures"):
-        if BASE.search(str(get(texture, "material_prop"))):
+        if BASE.match(str(get(texture, "material_prop"))):
             return get(texture, "texture")
     return None
 
