@@ -58,11 +58,16 @@ def test_the_status_says_whether_anything_looks_wrong(
     assert command("bake", sound, "--check", "--texels", 64, "-o", tmp_path / "a.muaavatar").status == status
 
 
-def test_several_characters_are_not_baked(characters: Path, command: Commands) -> None:
+def test_several_characters_are_not_baked(characters: Path, tmp_path: Path, command: Commands) -> None:
     sound = characters / "sound.glb"
     assert (
         f"{sound}: one character is baked at a time; only --check takes several"
         in command("bake", sound, sound).sentence
+    )
+    walk, run = tmp_path / "walk.bvh", tmp_path / "run.bvh"
+    assert (
+        f"{run}: one character is baked at a time; only --check takes several; each motion file needs a --motion of"
+        in (command("bake", sound, "--motion", walk, run).sentence)
     )
 
 

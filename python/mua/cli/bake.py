@@ -56,7 +56,8 @@ def _bake(options: dict[str, Any], more: list[Path], *, check: bool, json: Path 
     given = [path for path in (options["character"], *more) if path is not None]
     several = bool(more) or (check and given[:1] and given[0].is_dir() and not is_capture(given[0]))
     if several and not check:
-        raise InputError(f"{given[1]}: one character is baked at a time; only --check takes several")
+        motions = "; each motion file needs a --motion of its own" if options["motion"] else ""
+        raise InputError(f"{given[1]}: one character is baked at a time; only --check takes several{motions}")
     characters = named_characters(given) if several else []
     settings = read_settings(options | {"character": None} if several else options)
     if check and (settings.teacher or settings.training):
