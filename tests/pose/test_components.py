@@ -5,7 +5,7 @@ import pytest
 import torch
 
 from mua.arrays import Array
-from mua.pose.components import INPUT_FLOOR, JITTER, hold, principal_components, read_components
+from mua.pose.components import FORGONE, INPUT_FLOOR, JITTER, hold, principal_components, read_components
 from mua.pose.descriptor import normalization
 from mua.pose.encoding import Components, Normalization
 from mua.student.components import Components as TorchComponents
@@ -14,11 +14,11 @@ WIDTH, FRAMES = 6, 200
 HALF = 2.0**-10  # twice the rounding of half precision
 
 
-def frames(seed: int = 0) -> Array:
-    """Descriptors of which the last two numbers follow the first ones, the last exactly."""
+def frames(seed: int = 0, *, apart: float = 0.2) -> Array:
+    """Descriptors of which the last two numbers follow the first ones, one but for some noise, the last exactly."""
     rng = np.random.default_rng(seed)
     free = rng.normal(size=(FRAMES, 4)) * [1.0, 0.5, 0.1, 0.02] + [0, 1, 2, 3]
-    return np.column_stack([free, free[:, 0] + 0.05 * rng.normal(size=FRAMES), free[:, 1] - free[:, 2]])
+    return np.column_stack([free, free[:, 0] + apart * rng.normal(size=FRAMES), free[:, 1] - free[:, 2]])
 
 
 def components(columns: Array, units: Array | None = None, groups: Array | None = None) -> Components:
@@ -51,8 +51,15 @@ def test_components_do_not_vary_together_and_vary_alike_down_to_the_floor() -> N
     np.testing.assert_allclose(np.cov(x.T, bias=True), np.diag(expected), rtol=0, atol=20 * HALF)
 
 
-def test_what_follows_from_the_rest_is_no_component() -> None:
-    assert components(frames()).directions.shape == (WIDTH - 1, WIDTH)
+@pytest.mark.parametrize(("apart", "count"), [(0.2, WIDTH - 1), (0.05, WIDTH - 2)])
+def test_what_all_but_follows_from_the_rest_is_no_component(apart: float, count: int) -> None:
+    columns = frames(apart=apart)
+    own = components(columns)
+    assert own.directions.shape == (count, WIDTH)
+    variance = np.linalg.eigvalsh(np.cov(((columns - columns.mean(axis=0)) / columns.std(axis=0)).T, bias=True))
+    seen = variance / (variance + INPUT_FLOOR)
+    held = read_components(own, columns)[0].var(axis=0).sum()
+    assert held == pytest.approx(seen.sum(), rel=FORGONE)
 
 
 @pytest.mark.parametrize("still", [np.zeros((5, 3)), np.ones((1, 3))])

@@ -10,7 +10,7 @@ from mua.arrays import Array
 from mua.pose.encoding import Components, Normalization
 
 INPUT_FLOOR = 1.0  # variance added to each direction of the normalised descriptors; measured on held-out CMU walks
-LEAST_SPREAD = 1e-4  # share of the largest component's deviation; directions that vary less are dropped
+FORGONE = 1e-3  # share of the variance that networks see; the weakest directions that hold it are dropped
 MARGIN = 0.1  # margin as a share of a component's range
 JITTER = np.radians(1.0)  # in each joint, and as many metres in each length: the least margin of every component
 
@@ -30,7 +30,8 @@ def principal_components(
     """
     normal = (descriptors - normalization.mean) / normalization.scale
     variance, directions = _directions(normal, groups)
-    kept = np.sqrt(np.maximum(variance, 0)) > LEAST_SPREAD * np.sqrt(max(variance.max(), 0))
+    seen = np.maximum(variance, 0) / (np.maximum(variance, 0) + INPUT_FLOOR)
+    kept = np.cumsum(seen) > FORGONE * seen.sum()
     kept |= np.arange(len(kept)) == len(kept) - 1  # the largest, where nothing moves
     turn = (directions[:, kept] / np.sqrt(np.maximum(variance[kept], 0) + INPUT_FLOOR)).T[::-1].astype(np.float16)
     found = normal @ turn.astype(float).T
