@@ -21,6 +21,7 @@ from silent import Silent
 from small_bakes import SMALL
 
 from mua.asset import read
+from mua.baking import pipeline
 from mua.baking.distillation import Baked
 from mua.baking.pipeline import bake, parts
 from mua.baking.plan import plan, split
@@ -300,3 +301,17 @@ def test_killed_bake_ends_in_the_same_bytes(baked: Baked, tmp_path: Path) -> Non
 def test_a_command_is_refused_where_another_is_at_work(tmp_path: Path, refused: Callable[..., str]) -> None:
     with DirectoryLock(tmp_path / "out.work", name="the other"):
         assert f"--work {tmp_path / 'out.work'}: process {os.getpid()} is using it" in refused()
+
+
+@pytest.mark.usefixtures("forked")
+def test_processes_wait_for_a_recording_only_where_there_is_none(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A bake that goes on may need none."""
+    waited: list[int] = []
+    monkeypatch.setattr(pipeline, "_bake", lambda *given: waited.append(len(given[-1])))
+    settings = BakeSettings(tmp_path / "a.muaavatar", tmp_path / "work", SMALL, "cpu", jobs=2)
+    bake(settings, Silent())
+    (tmp_path / "work" / "recording-of-another-run").mkdir(parents=True)
+    bake(settings, Silent())
+    assert waited == [2, 0]

@@ -4,9 +4,9 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
-import gltf_files
 import numpy as np
 import pytest
+from face_files import grinning
 
 from mua.arrays import Array
 from mua.avatar.decode import express, pose_splats
@@ -25,22 +25,17 @@ ROUNDED = 64 * 2**-24  # colours of some splats over each other, of channels tha
 ONLY_THERE = faces._patched
 
 
-def grinning(tmp_path: Path) -> Character:
-    """A column with two expressions: one leans its upper end over, one lifts it a little."""
-    glb = gltf_files.body()
-    targets = []
-    for offset in ([0.15, 0, 0], [0, 0.05, 0]):
-        moved = np.zeros((16, 3))
-        moved[12:] = offset
-        targets.append({"POSITION": glb.accessor(moved)})
-    gltf_files.primitive(glb)["targets"] = targets
-    glb.json["meshes"][0]["extras"] = {"targetNames": ["lean", "lift"]}
-    return read_character(glb.save(tmp_path / "grin.glb"), atlas_size=256)
+def grinning_character(tmp_path: Path) -> Character:
+    return read_character(grinning(tmp_path), atlas_size=256)
+
+
+def drawn_here() -> None:
+    """No other process has drawn the source's faces."""
 
 
 def test_expressions_look_like_the_files_own_targets(tmp_path: Path) -> None:
-    character = grinning(tmp_path)
-    fidelity, warnings = fidelity_of(character, (), texels=TEXELS, faces=True)
+    character = grinning_character(tmp_path)
+    fidelity, warnings = fidelity_of(character, (), texels=TEXELS, faces=drawn_here)
     assert fidelity is not None
     assert fidelity.face is not None
     assert [shot.name for shot in fidelity.face.expressions] == ["lean", "lift"]
@@ -56,10 +51,10 @@ def test_expressions_look_like_the_files_own_targets(tmp_path: Path) -> None:
 
 
 def test_a_wrong_expression_is_measured_and_named(tmp_path: Path) -> None:
-    character = grinning(tmp_path)
+    character = grinning_character(tmp_path)
     assert character.expressions is not None
     wrong = replace(character.expressions, offsets=character.expressions.offsets * np.array([-1, 1, 1], np.float32))
-    fidelity, warnings = fidelity_of(replace(character, expressions=wrong), (), texels=TEXELS, faces=True)
+    fidelity, warnings = fidelity_of(replace(character, expressions=wrong), (), texels=TEXELS, faces=drawn_here)
     assert fidelity is not None
     assert fidelity.face is not None
     lean, lift = fidelity.face.expressions
@@ -70,7 +65,7 @@ def test_a_wrong_expression_is_measured_and_named(tmp_path: Path) -> None:
 def test_an_expression_drawn_where_it_moves_is_the_picture_drawn_whole(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    character = grinning(tmp_path)
+    character = grinning_character(tmp_path)
     assert character.source is not None
     teacher = StillTeacher(character, texels=TEXELS)
     rest = Poser(character.source, character.skeleton).rest()
@@ -95,7 +90,7 @@ def test_an_expression_drawn_where_it_moves_is_the_picture_drawn_whole(
 
 
 def test_splats_that_an_expression_moves_lie_among_the_others_as_if_all_were_drawn_anew(tmp_path: Path) -> None:
-    character = grinning(tmp_path)
+    character = grinning_character(tmp_path)
     assert character.source is not None
     teacher = StillTeacher(character, texels=TEXELS)
     rest = Poser(character.source, character.skeleton).rest()

@@ -21,7 +21,7 @@ from mua.pose.clip import Clip
 from mua.pose.skeleton import Pose
 from mua.recording import workers
 from mua.recording.parts import divide, is_joined, join_parts, record_share, share
-from mua.recording.workers import record_by_workers
+from mua.recording.workers import record_by_workers, waiting_workers
 from mua.rig.rig import Rig
 from mua.teacher import TeacherFrame
 
@@ -160,6 +160,24 @@ def test_workers_end_with_a_killed_parent_and_the_next_run_ends_in_the_same_file
         time.sleep(0.01)
     run(tmp_path / "r", Waiting, flag, jobs=1)
     assert content(tmp_path / "r") == content(alone)
+
+
+@pytest.mark.usefixtures("forked")
+def test_workers_that_have_waited_leave_the_same_files_and_end(alone: Path, tmp_path: Path) -> None:
+    with waiting_workers(3, FormulaTeacher) as waiting:
+        processes = [worker.process for worker in waiting]
+        run(tmp_path / "r", FormulaTeacher, waiting=waiting)
+        assert not waiting
+        assert all(process.poll() is not None for process in processes)  # also the one that two jobs did not need
+    assert content(tmp_path / "r") == content(alone)
+
+
+@pytest.mark.usefixtures("forked")
+def test_workers_whose_job_does_not_come_end() -> None:
+    with waiting_workers(2, FormulaTeacher) as waiting:
+        processes = [worker.process for worker in waiting]
+        assert [process.poll() for process in processes] == [None, None]
+    assert all(process.poll() is not None for process in processes)
 
 
 @pytest.mark.usefixtures("forked")

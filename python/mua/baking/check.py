@@ -1,7 +1,7 @@
 """A look at a character and its motion before a bake: what the splats keep of the one and the clips of the other."""
 
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from PIL import Image
 
+from mua.arrays import Array
 from mua.baking.listener import Listener
 from mua.baking.settings import BakeSettings
 from mua.baking.sources import faced, load_baked_character
@@ -18,7 +19,9 @@ from mua.fidelity import report
 from mua.fidelity.compare import Fidelity, compare
 from mua.fidelity.face_sheet import face_sheet
 from mua.fidelity.sheet import fidelity_sheet
-from mua.files.write import replacing, require_writable, write_bytes
+from mua.fidelity.source_process import SourceProcess
+from mua.files.png import png_bytes
+from mua.files.write import require_writable, write_bytes
 from mua.motion.load import LoadedMotion, counted, load_motions
 from mua.motion.mapping import write_mapping
 from mua.motion.match import JointPair, joint_pairs, match_joints, require_limbs, unmatched_target
@@ -29,7 +32,6 @@ from mua.pose.encoding import RATE
 from mua.rig.character import Character
 from mua.teachers.simulated.still import StillTeacher
 
-FAST = 1  # of a PNG's levels: a tenth larger than by the best, in a third of the time
 WITHOUT_FILE = "the procedural character has no file, so there is nothing to compare its splats with"
 
 
@@ -53,13 +55,24 @@ def check(settings: BakeSettings, listener: Listener) -> Check:
     """
     require_writable(settings.output)
     listener.stage("character")
-    character = load_baked_character(settings)
+    with SourceProcess() as process:
+        character = load_baked_character(settings, read=process.begin)
+        return _check(settings, character, listener, faces=process.images)
+
+
+def _check(
+    settings: BakeSettings,
+    character: Character,
+    listener: Listener,
+    *,
+    faces: Callable[[], Sequence[Array] | None],  # as `compare` takes them
+) -> Check:
     listener.stage("motion")
     loaded = _loaded(settings, character)
     qualities = tuple(_quality(settings, character, motion) for motion in loaded)
     listener.stage("comparison with source")
     clips, of_face = faced(character, [m.clip for m in loaded], settings.face)
-    fidelity, warnings = fidelity_of(character, clips, texels=settings.student.texels, faces=True)
+    fidelity, warnings = fidelity_of(character, clips, texels=settings.student.texels, faces=faces)
     pairs, unmatched = _matched(character, loaded) if settings.motions else ((), ())
     written = []
     if fidelity is not None:
@@ -95,11 +108,12 @@ def fidelity_of(
     *,
     texels: int,
     teacher: StillTeacher | None = None,
-    faces: bool = False,
+    faces: Callable[[], Sequence[Array] | None] | None = None,  # as `compare` takes them
 ) -> tuple[Fidelity | None, tuple[str, ...]]:
     """How much the splats look like the character, and a sentence for what is poor; None where nothing is measured.
 
-    The splats are those of `teacher`, or as many as `texels` says. With `faces`, also in each of its expressions.
+    The splats are those of `teacher`, or as many as `texels` says. With `faces`, also in each of its
+    expressions.
     """
     if character.source is None:
         return None, (WITHOUT_FILE,)
@@ -113,8 +127,7 @@ def fidelity_of(
 
 def write_sheet(path: Path, picture: Image.Image) -> None:
     """Write a picture of source beside splats."""
-    with replacing(path) as temporary:
-        picture.save(temporary, compress_level=FAST)
+    write_bytes(path, png_bytes(np.asarray(picture)))
 
 
 def as_dict(settings: BakeSettings, found: Check) -> dict[str, Any]:

@@ -28,6 +28,7 @@ from mua.files.lock import DirectoryLock
 from mua.files.write import replacing, require_writable
 from mua.pose.clip import Clip
 from mua.recording import PlannedClip, Recording
+from mua.recording.workers import Worker, waiting_workers
 from mua.rig.character import Character
 from mua.rig.template import make_template
 from mua.rig.texel_binding import bind_texels
@@ -54,10 +55,12 @@ def bake(settings: BakeSettings, listener: Listener) -> Baked:
     with DirectoryLock(settings.work, name=f"--work {settings.work}"):
         if settings.teacher is not None or settings.training is not None:
             return bake_trained_teacher(settings, device, listener)
-        return _bake(settings, device, listener)
+        starts_anew = not any(settings.work.glob("recording-*"))
+        with waiting_workers(settings.jobs if starts_anew else 0, SimulatedTeacher) as waiting:
+            return _bake(settings, device, listener, waiting)
 
 
-def _bake(settings: BakeSettings, device: torch.device, listener: Listener) -> Baked:
+def _bake(settings: BakeSettings, device: torch.device, listener: Listener, waiting: list[Worker]) -> Baked:
     listener.stage("character")
     character = load_baked_character(settings)
     clips, notes = clips_of(settings, character)
@@ -81,7 +84,7 @@ def _bake(settings: BakeSettings, device: torch.device, listener: Listener) -> B
     del still
     character = replace(character, source=None)  # its textures may be large
     release_memory()
-    recording = _record(settings, character, laid, planned, listener, fitted=corrections is not None)
+    recording = _record(settings, character, laid, planned, listener, fitted=corrections is not None, waiting=waiting)
     del laid
     release_memory()
     distillation = Distillation(
@@ -162,6 +165,7 @@ def _record(
     listener: Listener,
     *,
     fitted: bool,  # whether the splats were corrected by images of the source
+    waiting: list[Worker],
 ) -> Recording:
     """The stand-in teacher's recording."""
     texels, seed = settings.student.texels, settings.student.seed
@@ -173,7 +177,7 @@ def _record(
     lit_in = usual_poses(planned)
     teacher = partial(SimulatedTeacher, bare, texels=texels, laid=laid, lit_in=lit_in, seed=seed)
     key = recording_key([*parts(settings, character), *([FITTED] if fitted else [])], planned)
-    return recorded(teacher, key, settings, planned, listener)
+    return recorded(teacher, key, settings, planned, listener, waiting)
 
 
 def parts(settings: BakeSettings, character: Character) -> Iterator[bytes]:

@@ -9,7 +9,7 @@ from mua.filters import WAVELET
 from mua.pose.clip import Clip
 from mua.pose.encoding import RATE
 from mua.recording import PlannedClip, Recording
-from mua.recording.workers import record_by_workers
+from mua.recording.workers import Worker, record_by_workers
 from mua.teacher import Teacher
 from mua.version import __version__
 
@@ -20,6 +20,7 @@ def recorded(
     settings: BakeSettings,
     planned: list[PlannedClip],
     listener: Listener,
+    waiting: list[Worker] | None = None,  # of waiting_workers
 ) -> Recording:
     """The recording of `planned`; `key` of `recording_key` distinguishes it from those of other settings."""
     directory = settings.work / f"recording-{key}"
@@ -31,6 +32,7 @@ def recorded(
         directory,
         jobs=settings.jobs,
         rate=RATE,
+        waiting=waiting,
         progress=lambda done, workers: listener.step(done, total, detail=f"{workers} at work"),
         note=listener.note,
     )

@@ -1,7 +1,7 @@
 """Draws the source character and its splats in the same poses and views, and compares the images."""
 
 import itertools
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import moderngl
@@ -83,11 +83,12 @@ def compare(
     *,
     teacher: StillTeacher,
     source: Source,
-    faces: bool = False,
+    faces: Callable[[], Sequence[Array] | None] | None = None,
 ) -> Fidelity:
     """Draw a character's source and its still `teacher`'s splats, as the file stands and in frames spread over `clips`.
 
-    With `faces`, also close up in each of the character's expressions.
+    With `faces`, also close up in each of the character's expressions; it returns the source's images of them (of
+    `source_faces`), or None where they are to be drawn here.
     Raises InputError where this machine has no OpenGL.
     """
     poser = Poser(source, character.skeleton)
@@ -96,7 +97,9 @@ def compare(
         studio = _Studio(context, source, poser)
         views = [ROUND, *({side: degrees} for side, degrees in itertools.islice(itertools.cycle(IN_MOTION), POSED))]
         poses = tuple(studio.pictured(teacher, m, v) for m, v in zip(moments, views, strict=False))
-        return Fidelity(poses, compare_faces(context, teacher, source=source, rest=moments[0]) if faces else None)
+        if faces is None:
+            return Fidelity(poses)
+        return Fidelity(poses, compare_faces(context, teacher, source=source, rest=moments[0], drawn=faces()))
 
 
 def spread(clips: Sequence[Clip], count: int) -> list[tuple[Clip, int]]:

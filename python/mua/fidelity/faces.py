@@ -1,6 +1,7 @@
 """Each expression of a character, drawn from its file and as an avatar shows it: a close look at the face."""
 
-from collections.abc import Callable
+import itertools
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import moderngl
@@ -45,7 +46,12 @@ class FaceFidelity:
 
 
 def compare_faces(
-    context: moderngl.Context, teacher: StillTeacher, *, source: Source, rest: Moment
+    context: moderngl.Context,
+    teacher: StillTeacher,
+    *,
+    source: Source,
+    rest: Moment,
+    drawn: Sequence[Array] | None = None,  # the source's images, where they are drawn already
 ) -> FaceFidelity | None:
     """Draw source and splats at rest and in each expression alone; None where there are none.
 
@@ -55,13 +61,23 @@ def compare_faces(
     expressions, scene = teacher.rig.expressions, source.scene
     if expressions is None:
         return None
-    camera = camera_of(scene, rest)
-    of_source, of_splats = _Source(context, scene, rest, camera), _Splats(context, teacher, rest, camera)
-    drawn = [(of_source.at_rest, of_splats.at_rest)]
-    drawn += [(of_source.expressed(name), of_splats.expressed(number)) for number, name in enumerate(expressions.names)]
+    of_splats = _Splats(context, teacher, rest, camera_of(scene, rest))
+    numbers = range(len(expressions.names))
+    splats = itertools.chain([of_splats.at_rest], (of_splats.expressed(number) for number in numbers))
+    images = source_faces(context, scene, rest, expressions.names) if drawn is None else drawn
     names = AT_REST, *expressions.names
-    rest_shot, *shots = (ExpressionShot(*pair, agreement(*pair), name) for pair, name in zip(drawn, names, strict=True))
+    rest_shot, *shots = (
+        ExpressionShot(image, splat, agreement(image, splat), name)
+        for image, splat, name in zip(images, splats, names, strict=True)
+    )
     return FaceFidelity(rest_shot, tuple(shots))
+
+
+def source_faces(context: moderngl.Context, scene: Scene, rest: Moment, names: Sequence[str]) -> Iterator[Array]:
+    """Images [H, W, 4] of the file's own meshes at rest and in each expression alone."""
+    of_source = _Source(context, scene, rest, camera_of(scene, rest))
+    yield of_source.at_rest
+    yield from map(of_source.expressed, names)
 
 
 class _Source:

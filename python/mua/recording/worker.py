@@ -1,6 +1,7 @@
 """A process that records parts of a plan for the one that started it (mua.recording.workers).
 
-It reads a job and then numbers of parts from standard input, and says on standard output what it has done.
+It reads a job and then numbers of parts from standard input, and says on standard output what it has done. What comes
+before the job is only loaded.
 """
 
 import os
@@ -36,7 +37,8 @@ def main() -> None:
 
 
 def _record(asked: "queue.Queue[Any]", answers: IO[bytes]) -> None:
-    job: Job = asked.get()
+    while not isinstance(job := asked.get(), Job):
+        pass
     teacher, parts = job.teacher(), divide(job.plan)
     reference = cache(lambda: first_texture(teacher, job.plan))
     _send(answers, ENDED, None)

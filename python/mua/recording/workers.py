@@ -11,8 +11,8 @@ import shutil
 import subprocess
 import sys
 import threading
-from collections.abc import Callable, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -40,11 +40,30 @@ class Job:
 
 
 @dataclass
-class _Worker:
+class Worker:
+    """A process that records."""
+
     process: "subprocess.Popen[bytes]"
     listener: threading.Thread | None = None
     part: int | None = None  # the part that it is recording
     idle: bool = False  # whether it knows that no part is left
+
+    @classmethod
+    def start(cls) -> "Worker":
+        """Start a process; raises InputError where the machine has no room for it."""
+        environment = os.environ | dict.fromkeys(THREADS, "1")
+        command = [sys.executable, "-m", "mua.recording.worker"]
+        try:
+            process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=environment)
+        except OSError as error:
+            raise InputError(f"a process to record with cannot be started ({error.strerror})") from error
+        return cls(process)
+
+    def send(self, message: object) -> None:
+        assert self.process.stdin is not None
+        with suppress(OSError):  # it has ended; the thread that listens reports that
+            pickle.dump(message, self.process.stdin)
+            self.process.stdin.flush()
 
     def end(self) -> None:
         """Kill the process."""
@@ -63,43 +82,50 @@ class _Crew:
     """The workers, their messages and the progress of each part."""
 
     job: Job
-    heard: "queue.Queue[tuple[_Worker, Any]]" = field(default_factory=queue.Queue)
-    workers: list[_Worker] = field(default_factory=list)
+    waiting: list[Worker]
+    heard: "queue.Queue[tuple[Worker, Any]]" = field(default_factory=queue.Queue)
+    workers: list[Worker] = field(default_factory=list)
     done: dict[int, int] = field(default_factory=dict)  # recorded frames of each part
 
     def hire(self) -> None:
-        """Start a worker; raises InputError where the machine has no room for it."""
-        environment = os.environ | dict.fromkeys(THREADS, "1")
-        command = [sys.executable, "-m", "mua.recording.worker"]
-        try:
-            process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=environment)
-        except OSError as error:
-            raise InputError(f"a process to record with cannot be started ({error.strerror})") from error
-        worker = _Worker(process)
+        """Take a worker that waits, else start one; raises InputError where the machine has no room for it."""
+        worker = self.waiting.pop() if self.waiting else Worker.start()
         self.workers.append(worker)
         worker.listener = threading.Thread(target=self._listen, args=(worker,), daemon=True)
         worker.listener.start()
 
-    def send(self, worker: _Worker, message: object) -> None:
-        assert worker.process.stdin is not None
-        with suppress(OSError):  # it has ended; the listening thread reports that
-            pickle.dump(message, worker.process.stdin)
-            worker.process.stdin.flush()
-
     def dismiss(self) -> None:
         """End all workers, at once: what they have not stored is recorded again by the next run."""
-        for worker in self.workers:
+        for worker in (*self.workers, *self.waiting):
             worker.end()
+        self.waiting.clear()
 
-    def _listen(self, worker: _Worker) -> None:
+    def _listen(self, worker: Worker) -> None:
         """Give a worker its job, then queue its messages; in a thread, as it reads the job once it has loaded all."""
         assert worker.process.stdout is not None
-        self.send(worker, self.job)
+        worker.send(self.job)
         try:
             while True:
                 self.heard.put((worker, pickle.load(worker.process.stdout)))
         except (EOFError, OSError, pickle.UnpicklingError):
             self.heard.put((worker, None))
+
+
+@contextmanager
+def waiting_workers(count: int, needed: object) -> Iterator[list[Worker]]:
+    """Workers that load the modules of `needed`, which pickles by its name, while their job is still being prepared.
+
+    Those that no recording has taken end with the block. Raises InputError where the machine has no room for them.
+    """
+    waiting: list[Worker] = []
+    try:
+        for _ in range(count):
+            waiting.append(Worker.start())
+            waiting[-1].send(needed)
+        yield waiting
+    finally:
+        for worker in waiting:
+            worker.end()
 
 
 def record_by_workers(
@@ -109,6 +135,7 @@ def record_by_workers(
     *,
     jobs: int,  # processes at most
     rate: float,
+    waiting: list[Worker] | None = None,  # of waiting_workers; it is empty then
     progress: Callable[[int, int], None] = lambda done, workers: None,
     note: Callable[[str], None] = lambda sentence: None,
 ) -> None:
@@ -125,7 +152,7 @@ def record_by_workers(
         _remove_damaged(part_directory(directory, part, len(parts)), clips, rate=rate, whole=False, note=note)
     if not is_joined(directory):
         directory.parent.mkdir(parents=True, exist_ok=True)
-        crew = _Crew(Job(teacher, plan, directory, rate))
+        crew = _Crew(Job(teacher, plan, directory, rate), [] if waiting is None else waiting)
         left = [part for part in longest_first(parts) if not _finished(crew, parts, part)]
         try:
             for _ in range(min(jobs, len(left))):
@@ -176,10 +203,10 @@ def _work_off(crew: _Crew, left: list[int], progress: Callable[[int, int], None]
             running -= worker.part is not None
             worker.part = waiting.pop(0) if waiting else None
             worker.idle = worker.part is None
-            crew.send(worker, worker.part)
+            worker.send(worker.part)
 
 
-def _lost(worker: _Worker) -> str:
+def _lost(worker: Worker) -> str:
     status = worker.process.wait()
     how = f"was ended by signal {-status}" if status < 0 else f"ended with status {status}"
     return (

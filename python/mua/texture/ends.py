@@ -85,7 +85,7 @@ class _Pieces:
         self.pieces = pieces_of(mesh)  # [F]
         self._corners, self._triangles = mesh.vertices[mesh.faces], samples.triangles
         self._apart = APART * float(np.ptp(mesh.vertices, axis=0).max())
-        self._tree = cKDTree(self._among(samples.places, self.pieces[samples.triangles]))
+        self._tree = cKDTree(self._among(samples.places, self.pieces[samples.triangles]), balanced_tree=False)
 
     def lie_off(
         self,
@@ -94,17 +94,20 @@ class _Pieces:
         pieces: Array,  # [n] on which these surfels lie
     ) -> Array:
         """Which places [n] lie farther from their piece than AWAY allows at that distance from their centres."""
-        off, among = np.full(len(places), self._tree.n > 0), self._among(places, pieces)
+        if not self._tree.n:
+            return np.zeros(len(places), bool)
+        among, near = self._among(places, pieces), AWAY * reach
+        off = self._tree.query(among, distance_upper_bound=near.max(initial=0), workers=-1)[0] > near  # of samples
         for count in NEAREST:
             rows = np.flatnonzero(off)
             if not len(rows):
                 break
-            near = self._tree.query(among[rows], k=range(1, min(count, self._tree.n) + 1), workers=-1)[1]
-            corners = self._corners[self._triangles[near]]
+            found = self._tree.query(among[rows], k=range(1, min(count, self._tree.n) + 1), workers=-1)[1]
+            corners = self._corners[self._triangles[found]]
             nearest = np.einsum("nkc,nkcd->nkd", nearest_barycentrics(places[rows, None], corners), corners)
             away = nearest - places[rows, None]
             squares = np.einsum("nkc,nkc->nk", away, away).min(axis=1)
-            off[rows] = squares > (AWAY * reach[rows]) ** 2
+            off[rows] = squares > near[rows] ** 2
         return off
 
     def _among(self, places: Array, pieces: Array) -> Array:

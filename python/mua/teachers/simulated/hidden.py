@@ -31,9 +31,27 @@ TURN = np.radians(120)  # of a joint, at most
 WELL_MOVED = 0.1  # of the farthest: vertices that an expression moves less uncover nothing
 FAR = wp.constant(1.0e6)  # metres: as far as a ray goes
 LAYERS = wp.constant(4)  # of cut-out surface that a ray passes
+NONE, ALONE = wp.constant(-1), wp.constant(-2)  # in place of a triangle that a ray has met
+LARGE = 4  # texels on a triangle, of which the next one often looks at the same triangles: the nearest is then sought
+INSIDE = wp.constant(1.0e-3)  # share of a triangle's sides near which only the search among all triangles decides
 LIFT = 5e-4  # metres on a person, from which a ray starts: what lies closer is the surface itself
 
 start()
+
+
+@wp.func
+def meets(solid: wp.uint64, face: int, start: wp.vec3, away: wp.vec3) -> bool:
+    """Whether a ray meets the inside of one triangle (Moeller and Trumbore 1997)."""
+    mesh = wp.mesh_get(solid)
+    corner = mesh.points[mesh.indices[3 * face]]
+    one = mesh.points[mesh.indices[3 * face + 1]] - corner
+    other = mesh.points[mesh.indices[3 * face + 2]] - corner
+    across = wp.cross(away, other)
+    volume = wp.dot(one, across)
+    apart = start - corner
+    along = wp.cross(apart, one)
+    u, v = wp.dot(apart, across) / volume, wp.dot(away, along) / volume
+    return u > INSIDE and v > INSIDE and u + v < 1.0 - INSIDE and wp.dot(other, along) / volume > 0.0
 
 
 @wp.kernel(enable_backward=False)
@@ -45,15 +63,27 @@ def look_out(
     points: wp.array[wp.vec3],
     directions: wp.array[wp.vec3],
     lift: float,
+    met: wp.array[int],
     seen: wp.array[wp.bool],
 ):
-    """Whether a ray from each point meets no triangle of `solid`, and `cut` only where the texture shows nothing."""
+    """Whether a ray from each point meets no triangle of `solid`, and `cut` only where the texture shows nothing.
+
+    `met` is the triangle that the last ray met in each direction: the next point is close by, and often meets it too.
+    It is NONE before that, and ALONE where triangles are too small for that to help.
+    """
     i = wp.tid()
     for k in range(directions.shape[0]):
         if not seen[i]:
             away = directions[k]
             start = points[i] + lift * away
-            free = not wp.mesh_query_ray_anyhit(solid, start, away, FAR)
+            free = met[k] < 0 or not meets(solid, met[k], start, away)
+            if free and met[k] == ALONE:
+                free = not wp.mesh_query_ray_anyhit(solid, start, away, FAR)
+            elif free:
+                first = wp.mesh_query_ray(solid, start, away, FAR)
+                free = not first.result
+                if first.result:
+                    met[k] = first.face
             for _layer in range(LAYERS):
                 if free and not seen[i]:
                     hit = wp.mesh_query_ray(cut, start, away, FAR)
@@ -75,7 +105,8 @@ def showing_instead(
     solid: Array,  # [N] bool: texels that nothing shows through
 ) -> Array:
     """The texel [N] whose colour each one shows: its own, or that of the nearest solid one that can be seen."""
-    covers = _Covers(character, cut=np.asarray(np.isin(character.mesh.faces, corners[~solid]).all(axis=1)))
+    cut = np.asarray(np.isin(character.mesh.faces, corners[~solid]).all(axis=1))
+    covers = _Covers(character, cut=cut, texels=len(corners))
     lift = LIFT * float(np.ptp(character.mesh.vertices, axis=0).max())
     hidden = np.arange(len(corners))
     rng = np.random.default_rng(0)
@@ -133,8 +164,10 @@ class _Covers:
         character: Character,
         *,
         cut: Array,  # [F] bool: faces with texels that something shows through
+        texels: int,
     ) -> None:
         mesh = character.mesh
+        self._met = NONE if texels > LARGE * len(mesh.faces) else ALONE
         self._faces = [mesh.faces[~cut], mesh.faces[cut]]
         self._uv = wp.array(mesh.uv[mesh.uv_faces[cut]].reshape(-1, 2), dtype=wp.vec2, device=DEVICE)
         self._shown = wp.array(character.base_color[..., 3] >= SOLID * 255, dtype=bool, device=DEVICE)
@@ -153,7 +186,13 @@ class _Covers:
 
         def looked(some: Array) -> Array:
             seen = wp.zeros(len(some), dtype=bool, device=DEVICE)
-            inputs = [*surface, wp.array(some, dtype=wp.vec3, device=DEVICE), directions, lift]
+            inputs = [
+                *surface,
+                wp.array(some, dtype=wp.vec3, device=DEVICE),
+                directions,
+                lift,
+                wp.full(len(away), self._met, dtype=int, device=DEVICE),
+            ]
             wp.launch(look_out, dim=len(some), inputs=inputs, outputs=[seen], device=DEVICE)
             return np.asarray(seen.numpy())
 
