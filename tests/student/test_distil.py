@@ -1,5 +1,6 @@
 """From a recording on disk to a student: its frames, its joints, and a resumed run."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,11 +16,12 @@ from mua.avatar.decode import decode_clip_frame
 from mua.baking.assemble import assemble
 from mua.channels import ATTRIBUTES, CHANNELS
 from mua.errors import InputError
+from mua.pose.clip import RANGE_OF_MOTION, REST
 from mua.pose.descriptor import describe
 from mua.pose.skeleton import Pose
 from mua.recording import Recording, TeacherWriter
 from mua.rig.moving import moving_joints
-from mua.student.distil import distil
+from mua.student.distil import distil, prepare
 from mua.student.model import Student
 from mua.student.settings import Settings
 
@@ -43,10 +45,13 @@ class Heard:
         self.steps.append((done, total))
 
 
-def recording(directory: Path, *, training: int = 2, held: int = 0, still: int | None = None) -> Recording:
+def recording(
+    directory: Path, *, training: int = 2, held: int = 0, still: int | None = None, names: Sequence[str] = ()
+) -> Recording:
     """`training` clips and a held-out one whose values are far off; every second frame is recorded.
 
-    `held` is the seed of the held-out clip, which alone moves the joint `still`, in its place too.
+    `held` is the seed of the held-out clip, which alone moves the joint `still`, in its place too. The first clips
+    may have `names`.
     """
     rig, rng = synthetic_rig(), np.random.default_rng(0)
     with TeacherWriter(directory, rig, rate=24.0) as writer:
@@ -57,7 +62,7 @@ def recording(directory: Path, *, training: int = 2, held: int = 0, still: int |
             if still is not None and not held_out:
                 clip.rotations[:, still] = rig.skeleton.bind_rotations[still]
                 clip.translations[:, still] = rig.skeleton.bind_translations[still]
-            writer.start_clip(f"clip {number}", held_out=held_out)
+            writer.start_clip(names[number] if number < len(names) else f"clip {number}", held_out=held_out)
             for frame in range(len(clip)):
                 pose = Pose(clip.rotations[frame], clip.translations[frame])
                 mesh = (rig.mesh.vertices + 0.01 * rng.normal(size=3)).astype(np.float32)
@@ -98,6 +103,16 @@ def test_held_out_clips_change_nothing_in_a_student(tmp_path: Path) -> None:
     assert first.encoding.joints == (1,)
     assert first.encoding.translated == ()
     assert same(first, second)
+
+
+def test_the_pose_in_which_a_file_stands_counts_more_than_other_frames_that_are_not_the_users(tmp_path: Path) -> None:
+    names = ("own", f"{RANGE_OF_MOTION}walk", f"{RANGE_OF_MOTION}{REST}")
+    source = recording(tmp_path / "recording", training=3, names=names)
+    _, samples = prepare(source, settings())
+    assert samples.weights is not None
+    own, others, standing = samples.weights.reshape(3, -1)
+    assert (own == 1).all()
+    assert 0 < others.max() < standing.min() < 1
 
 
 def test_a_second_run_repeats_nothing_and_gives_the_same_student(tmp_path: Path) -> None:

@@ -7,9 +7,8 @@ from mua.baking.plan import plan
 from mua.baking.settings import BakeSettings
 from mua.baking.sources import load_clips
 from mua.characters.rigid_skeleton import rest_pose
-from mua.fidelity.posing import REST
 from mua.motion.range import motion_range, moved_by
-from mua.pose.clip import RANGE_OF_MOTION, Clip
+from mua.pose.clip import RANGE_OF_MOTION, REST, Clip
 from mua.recording import PlannedClip
 from mua.rig.character import Character
 from mua.student.settings import Settings

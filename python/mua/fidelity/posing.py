@@ -8,12 +8,11 @@ from mua import rotation
 from mua.arrays import Array
 from mua.characters.assemble import weighted
 from mua.characters.rigid_skeleton import rest_pose
-from mua.pose.clip import Clip, Stretches
+from mua.pose.clip import REST, Clip, Stretches
 from mua.pose.descriptor import heading_of
 from mua.pose.skeleton import Pose, Skeleton
 from mua.scene import Part, Scene, Source
 
-REST = "as the file stands"
 AGREED = 0.5  # share of the surface that must turn alike to have a heading of its own
 ALIKE = 30.0  # degrees
 

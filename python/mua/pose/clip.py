@@ -11,6 +11,7 @@ from mua.errors import InputError
 from mua.pose.skeleton import Pose
 
 RANGE_OF_MOTION = "range of motion: "  # prefix of the clip names of the built-in range of motion
+REST = "as the file stands"  # name of the pose in which a character's file stands
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,6 +92,11 @@ def _followed(first: Clip, second: Clip) -> Array | None:
 def is_range(name: str) -> bool:
     """Whether a clip of that name is of the built-in range of motion."""
     return name.startswith(RANGE_OF_MOTION)
+
+
+def is_rest(name: str) -> bool:
+    """Whether a clip of that name is the pose in which the character's file stands, recorded beside that range."""
+    return name == f"{RANGE_OF_MOTION}{REST}"
 
 
 def is_averaged(name: str, *, held_out: bool) -> bool:

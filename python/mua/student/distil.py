@@ -14,7 +14,7 @@ from torch import Tensor
 
 from mua.arrays import Array
 from mua.errors import InputError
-from mua.pose.clip import is_range
+from mua.pose.clip import is_range, is_rest
 from mua.pose.components import principal_components
 from mua.pose.descriptor import choose_joints, choose_translated, describe, groups_of, normalization, units_of
 from mua.pose.encoding import PoseEncoding
@@ -32,6 +32,7 @@ from mua.training.optimise import Progress
 from mua.training.processes import ALONE, Processes
 
 RANGE_WEIGHT = 0.03  # weight of a frame of the built-in range of motion: bases are primarily for the user's motion
+REST_WEIGHT = 0.3  # of the pose in which the file stands: one frame, but the one in which a character is first seen
 GPU_SECONDS = 1.0  # seconds between queries of the GPU
 
 
@@ -144,10 +145,14 @@ def _samples(recording: Recording, descriptors: Array) -> Samples:
 def _weights(recording: Recording) -> Tensor | None:
     """The weight of each training frame, lower for the built-in range of motion; None where there is none."""
     clips = [clip for clip in recording.clips if not clip.held_out]
-    counts = np.concatenate(
-        [np.full(len(clip.recorded), RANGE_WEIGHT if is_range(clip.name) else 1.0) for clip in clips]
-    )
+    counts = np.concatenate([np.full(len(clip.recorded), _weight(clip.name)) for clip in clips])
     return torch.from_numpy(counts).float() if (counts == 1).any() and (counts < 1).any() else None
+
+
+def _weight(name: str) -> float:
+    if is_rest(name):
+        return REST_WEIGHT
+    return RANGE_WEIGHT if is_range(name) else 1.0
 
 
 class _Reporter:
