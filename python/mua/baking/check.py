@@ -112,8 +112,7 @@ def fidelity_of(
 ) -> tuple[Fidelity | None, tuple[str, ...]]:
     """How much the splats look like the character, and a sentence for what is poor; None where nothing is measured.
 
-    The splats are those of `teacher`, or as many as `texels` says. With `faces`, also in each of its
-    expressions.
+    The splats are those of `teacher`, or as many as `texels` says. With `faces`, also in each of its expressions.
     """
     if character.source is None:
         return None, (WITHOUT_FILE,)
