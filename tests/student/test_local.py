@@ -103,6 +103,7 @@ def two_parts() -> Parts:
         coarse,
         fine,
         torch.tensor([0, 0, 0, 1, 1, 1, 1]),
+        torch.tensor([0, 0]),
     )
 
 
