@@ -114,11 +114,11 @@ def train(
         )
         fit(branch, inputs, source, channels=channels, settings=settings, name=name, run=run.alone(name))
 
-    tasks: list[Callable[[Run], None]] = [fit_mesh] if only in (None, "coarse") else []
-    if only != "coarse":
-        branches = zip(BRANCHES, student.branches, (GEOMETRY, APPEARANCE), strict=True)
-        tasks += [partial(fit_named, *branch) for branch in branches]
-    fit_apart(tasks, run)
+    branches = zip(BRANCHES, student.branches, (GEOMETRY, APPEARANCE), strict=True)
+    geometry, appearance = (partial(fit_named, *branch) for branch in branches)
+    both = [appearance, geometry]
+    # two at once: appearance takes as long as the others, and measures what geometry waits for but the mesh does not
+    fit_apart([fit_mesh] if only == "coarse" else both if only else [appearance, fit_mesh, geometry], run)
     if only is not None:
         return
     low = student.mean_lowpass() if counts is None else mean_lowpass(student, samples)
