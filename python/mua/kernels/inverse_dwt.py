@@ -36,7 +36,8 @@ def add_static(
     static_offset: Array,  # [C, N]
 ) -> Array:
     """The texture at the valid texels, [C, N], with the static offset of the finest levels."""
-    return np.asarray(fine.reshape(len(fine), -1)[:, texels] + static_offset)
+    channels, rows, columns = fine.shape
+    return np.asarray(fine.reshape(channels, rows * columns)[:, texels] + static_offset)
 
 
 def halve(
