@@ -22,7 +22,7 @@ def errors(attribute: str, values: list[float]) -> Errors:
     else:
         other[:, np.arange(23)[ATTRIBUTES[attribute]][: len(values)]] = values
     found = Errors()
-    found.add(WholeFrame(CLIP, 0, mesh, texture), {"student": Picture(other, moved)})  # type: ignore[arg-type]
+    found.add(WholeFrame(CLIP, 0, 0, mesh, texture), {"student": Picture(other, moved)})  # type: ignore[arg-type]
     return found
 
 

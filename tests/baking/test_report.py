@@ -24,7 +24,7 @@ def errors(
     """Of a teacher that is one everywhere; bands, bases and student miss it by so much. The mean is nought."""
     rest = Clip("a", 30.0, np.zeros((1, 1, 4)), np.zeros((1, 1, 3)))
     clip = RecordedClip(rest.name, 30.0, rest.rotations, rest.translations, False, np.zeros(1, np.int64), True)
-    frame = WholeFrame(clip, 0, np.ones((4, 3), np.float32), np.ones((5, 23), np.float32))
+    frame = WholeFrame(clip, 0, 0, np.ones((4, 3), np.float32), np.ones((5, 23), np.float32))
     misses = {"mean": 1, "bands": bands or student, "best": best or student, "student": student}
     counted = Errors()
     for _ in range(frames):

@@ -20,7 +20,15 @@ from mua.student.coarse import mesh_pca
 from mua.student.components import Components
 from mua.student.distil import prepare
 from mua.student.factorize import truncated_svd
-from mua.student.local import POSE_FOR_LIGHT, Parts, body_parts, sample_locality, sample_owners, texture_locality
+from mua.student.local import (
+    POSE_FOR_LIGHT,
+    Locality,
+    Parts,
+    body_parts,
+    sample_locality,
+    sample_owners,
+    texture_locality,
+)
 from mua.student.model import Alphas
 from mua.student.regress import factors, fit_local, visible, whitening
 from mua.student.targets import Targets
@@ -60,6 +68,8 @@ def test_every_entry_of_the_descriptor_fades_with_its_joint_and_the_root_by_one_
     parts = body_parts(rig, encoding)
     seen = [rig.skeleton.root, *encoding.joints]
     assert parts.steps.shape == (len(seen), encoding.width)
+    parents = [int(rig.skeleton.parents[joint]) for joint in seen[1:]]
+    assert [seen[part] for part in parts.above[1:].tolist()] == parents
     turned = 6 * len(encoding.joints)
     for part in range(len(seen)):
         steps = joint_steps(rig.skeleton, seen)[part]
@@ -103,6 +113,7 @@ def two_parts() -> Parts:
         coarse,
         fine,
         torch.tensor([0, 0, 0, 1, 1, 1, 1]),
+        torch.tensor([0, 0]),
     )
 
 
@@ -181,6 +192,27 @@ def test_a_part_is_fitted_in_the_directions_that_it_varies_in() -> None:
         narrow, wide = factors(share)
         assert torch.allclose(narrow @ wide, share, atol=1e-5)
         assert own.shape[1] == 0 or narrow.shape == (12, 3)
+
+
+def test_a_part_that_hardly_varies_is_fitted_with_the_one_above() -> None:
+    """Of a chain of parts with a coordinate each, the third varies too little and so do both that hang on it."""
+    above, reach = torch.tensor([0, 0, 1, 2, 2]), torch.rand(5, 4, generator=torch.Generator().manual_seed(0))
+    shares = torch.diag_embed(torch.eye(5))
+    goal = torch.tensor([1.0, 1.0, 1e-2, 1e-2, 1e-2]) * torch.randn(50, 5, generator=torch.Generator().manual_seed(1))
+    seen, left = Locality(reach.long(), above, reach, shares).fewer(goal)
+    assert torch.equal(seen, reach[:2])
+    assert torch.equal(left, torch.stack([shares[0], shares[1:].sum(0)]))
+    seen, left = Locality(reach.long(), above, reach, shares).fewer(goal / goal.std(0))
+    assert torch.equal(seen, reach)
+    assert torch.equal(left, shares)
+
+
+def test_small_parts_that_vary_together_are_one_part() -> None:
+    above, shares = torch.tensor([0, 0, 1, 1, 1]), torch.diag_embed(torch.eye(5))
+    goal = torch.tensor([1.0, 1.0, 0.04, 0.04, 0.04]) * torch.ones(10, 5)
+    goal[:, 1] = 0.04  # each 0.16 % of all, the four together 0.64 %
+    _, left = Locality(above[:, None], above, torch.ones(5, 1), shares).fewer(goal)
+    assert torch.equal(left, torch.stack([shares[0], shares[1:].sum(0)]))
 
 
 def test_a_part_is_blind_to_joints_that_tell_frames_hardly_apart() -> None:

@@ -3,6 +3,7 @@
 import threading
 import time
 from collections.abc import Iterator
+from functools import partial
 
 import pytest
 
@@ -77,7 +78,20 @@ def test_the_first_error_ends_all_tasks() -> None:
         raise ValueError("no room")
 
     with pytest.raises(ValueError, match="no room"):
-        together([lambda: assert_set(stop), fail], stop=stop.set)
+        together([lambda: assert_set(stop), fail], stop=stop.set, threads=2)
+
+
+def test_tasks_beyond_the_threads_wait_and_do_not_begin_after_an_error() -> None:
+    begun: list[str] = []
+
+    def fail() -> None:
+        raise ValueError("no room")
+
+    together([partial(begun.append, name) for name in ("one", "two", "three")], stop=lambda: None, threads=1)
+    assert begun == ["one", "two", "three"]
+    with pytest.raises(ValueError, match="no room"):
+        together([fail, *[partial(time.sleep, 0.05)] * 4, partial(begun.append, "late")], stop=lambda: None, threads=1)
+    assert begun == ["one", "two", "three"]
 
 
 def assert_set(stop: threading.Event) -> None:

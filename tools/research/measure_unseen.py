@@ -216,7 +216,7 @@ class Measurement:
     def _one(self, motion: Motion, shown: Shown, errors: Errors) -> Result:
         """One frame alone; its errors are added to those of the motion."""
         teacher, student = self.posed(motion, shown)
-        whole = WholeFrame(motion.clip, shown.frame, shown.mesh, shown.texture)  # type: ignore[arg-type]
+        whole = WholeFrame(motion.clip, shown.frame, 0, shown.mesh, shown.texture)  # type: ignore[arg-type]
         errors.add(whole, {"mean": self._mean, "student": Picture(student.texture, student.canonical)})
         distance, apart = self._ruler.distances(student, shown.mesh)
         return Result(

@@ -16,14 +16,13 @@ import torch
 from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.avatar.decode import unposed_clip_frame
-from mua.channels import APPEARANCE, ATTRIBUTES, GEOMETRY, SH_C0
+from mua.channels import APPEARANCE, ATTRIBUTES, CHANNELS, GEOMETRY, SH_C0
 from mua.recording import Recording, WholeFrame
 from mua.student.bases import BestCoefficients
 from mua.student.model import Student
-from mua.texture.fill import Fill
 from mua.training.threads import in_order
 from mua.training.torch_threads import few_threads, thread_share
-from mua.wavelets import dynamic_subbands
+from mua.wavelets import Bands
 
 TRAINING = "training"
 MESH = "mesh"  # the canonical vertices, beside the attributes of the texture
@@ -134,9 +133,8 @@ class _Comparer:
     """Holds what every frame is compared with."""
 
     def __init__(self, recording: Recording, student: Student, avatar: Avatar) -> None:
-        self.student, self.avatar = student, avatar
+        self.recording, self.student, self.avatar = recording, student, avatar
         self.mean = Picture(recording.mean_texture(), recording.mean_mesh())
-        self.fill = Fill(recording.rig.texels)
         parts = zip(student.branches, (GEOMETRY, APPEARANCE), strict=True)
         self.best = [(BestCoefficients(branch), channels) for branch, channels in parts]
 
@@ -163,8 +161,10 @@ class _Comparer:
     @torch.no_grad()
     def _closest(self, frames: Sequence[WholeFrame]) -> tuple[Array, Array]:
         """Textures [F, N, 23] whose D1 and D0 are at their mean, and those of the best coefficients."""
-        images = torch.stack([self.fill(torch.from_numpy(frame.texture)) for frame in frames])
-        bands = dynamic_subbands(images, self.student.wavelet)
+        recorded = [
+            self.recording.subbands(slice(0, CHANNELS), [frame.row], held_out=frame.clip.held_out) for frame in frames
+        ]
+        bands = Bands(*(torch.cat(level) for level in zip(*recorded, strict=True)))
         alphas = [best(bands.of(channels)) for best, channels in self.best]
         best = self.student.synthesize((alphas[0], alphas[1]))
         return self.student.texture(bands).numpy(), self.student.texture(best).numpy()

@@ -36,8 +36,8 @@ def add_static(
     static_offset: Array,  # [C, N]
 ) -> Array:
     """The texture at the valid texels, [C, N], with the static offset of the finest levels."""
-    rows, columns = np.divmod(texels, fine.shape[2])
-    return np.asarray(fine[:, rows, columns] + static_offset)
+    channels, rows, columns = fine.shape
+    return np.asarray(fine.reshape(channels, rows * columns)[:, texels] + static_offset)
 
 
 def halve(

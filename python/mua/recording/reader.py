@@ -55,6 +55,7 @@ class WholeFrame:
 
     clip: RecordedClip
     index: int  # in the clip
+    row: int  # among the recorded frames of its kind
     mesh: Array  # [V, 3] float32 canonical vertices, metres
     texture: Array  # [N, 23] float32, rotations aligned to the reference frame
 
@@ -151,7 +152,7 @@ class Recording:
     def whole_frames(self, held_out: bool | None = None) -> Iterator[WholeFrame]:
         """The frames kept whole, of one kind or (None) of both, in the order of recording."""
         by_name = {clip.name: clip for clip in self.clips}
-        for shard in self._shards:
+        for number, shard in enumerate(self._shards):
             owners = [(segment, frame) for segment in shard.index.segments for frame in segment.recorded]
             for row in shard.index.whole_rows:
                 segment, frame = owners[row]
@@ -164,7 +165,8 @@ class Recording:
                         raise not_finite(
                             shard.directory / f"{whole_name(row)}.npy", f"frame {frame} of {segment.clip!r}"
                         )
-                    yield WholeFrame(by_name[segment.clip], frame, mesh, texture)
+                    among = int((self._places[segment.held_out] == (number, row)).all(axis=1).argmax())
+                    yield WholeFrame(by_name[segment.clip], frame, among, mesh, texture)
 
     def fingerprint(self) -> str:
         """A SHA-256 that changes with any recorded frame."""

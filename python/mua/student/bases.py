@@ -14,6 +14,8 @@ from mua.student.texture_metric import in_texture, to_subbands
 from mua.training.optimise import Progress, Run
 from mua.wavelets import Bands
 
+FRAMES_AT_ONCE = 64  # whose subbands are turned: copies of all would take much memory
+
 
 @torch.no_grad()
 def factorize_branch(
@@ -42,7 +44,7 @@ def factorize_branch(
     energy = room(branch.channels)
     for done, channel in enumerate(owned, start=1):
         bands = Bands(*(band.to(run.device) for band in source(slice(channel, channel + 1), torch.arange(frames))))
-        bands = bands if wavelet is None else in_texture(bands, wavelet)
+        bands = bands if wavelet is None else _in_texture(bands, wavelet)
         generator = run.alone(f"{stage} {channel}").generator  # whichever process solves for it draws the same numbers
         worth = None if sensitivities is None else worth_of(sensitivities, channel)
         solved, energy[channel] = factorize_channel(
@@ -59,6 +61,14 @@ def factorize_branch(
     flat, spread = alphas.flat(), energy / (frames * settings.texels**2)
     run.checkpoints.save(stage, {"branch": branch.state_dict(), "flat": flat, "variance": spread})
     return flat, spread
+
+
+def _in_texture(bands: Bands, wavelet: str) -> Bands:
+    """The subbands in units of the texture, overwritten some frames at a time."""
+    for some in zip(*(band.split(FRAMES_AT_ONCE) for band in bands), strict=True):
+        for own, turned in zip(some, in_texture(Bands(*some), wavelet), strict=True):
+            own.copy_(turned)
+    return bands
 
 
 def factorize_channel(
@@ -86,7 +96,7 @@ def factorize_channel(
     levels = ((branch.d3, branch.ranks.d3, d3), (branch.d2, branch.ranks.d2, d2))
     for (detail, rank, band), own in zip(levels, fine, strict=True):
         detail.mean[:, channel] = torch.einsum("f,fsij->sij", counts, band) / len(band)
-        band = (band - detail.mean[:, channel]) * roots[:, None, None, None]
+        band = (band - detail.mean[:, channel]).mul_(roots[:, None, None, None])  # of all frames: in place
         factors = separable_blendshapes(band, rank, sweeps=sweeps, generator=generator, worth=own)
         detail.h[:, channel], detail.w[:, channel] = factors.h, factors.w
         coefficients.append(factors.coefficients / roots[:, None])

@@ -9,7 +9,7 @@ from mua.training.optimise import Progress, Run
 from mua.training.threads import together
 from mua.training.torch_threads import thread_share
 
-PARTS = 2  # of torch's threads: as many tasks take long
+PARTS = 2  # tasks at once, each with so large a part of torch's threads
 
 
 class Stopped(Exception):
@@ -17,10 +17,9 @@ class Stopped(Exception):
 
 
 def fit_apart(tasks: Sequence[Callable[[Run], None]], run: Run) -> None:
-    """Fit parts that share nothing but their inputs: on a CPU side by side; else one after the other.
+    """Fit parts that share nothing but their inputs: on a CPU two side by side; else one after the other.
 
-    There half the threads for each do more than all for one: the larger part of a step is too small to be divided. A
-    third shares them with the two, and soon ends.
+    There half the threads for each do more than all for one: the larger part of a step is too small to be divided.
     """
     if len(tasks) < 2 or not side_by_side(run):
         for task in tasks:
@@ -34,7 +33,8 @@ def fit_apart(tasks: Sequence[Callable[[Run], None]], run: Run) -> None:
         run.report(progress)
 
     with thread_share(PARTS):
-        together([partial(task, replace(run, report=report)) for task in tasks], stop=stop.set)
+        own = replace(run, report=report)
+        together([partial(task, own) for task in tasks], stop=stop.set, threads=PARTS)
 
 
 def side_by_side(run: Run) -> bool:

@@ -57,7 +57,7 @@ def set_pca(coarse: Coarse, meshes: Tensor, run: Run, weights: Tensor | None = N
 def fit_coarse(
     coarse: Coarse,
     inputs: Tensor,  # [F, D] normalised descriptors
-    meshes: Tensor,  # [F, V, 3] canonical vertices, metres
+    pca: MeshPca,  # that `set_pca` has set
     *,
     components: Components,
     settings: Settings,
@@ -65,8 +65,7 @@ def fit_coarse(
     parts: Parts | None = None,
     weights: Tensor | None = None,  # [F] how much each frame counts
 ) -> None:
-    """Set the PCA of `coarse` and fit its F_temp to the coefficients (paper, Animatable Coarse Geometry)."""
-    pca = set_pca(coarse, meshes, run, weights)
+    """Fit F_temp of `coarse` to the coefficients of its PCA (paper, Animatable Coarse Geometry)."""
     fade = settings.generalisation.fade
     mlp = regress(
         inputs,

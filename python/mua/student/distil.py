@@ -135,7 +135,7 @@ def describe_frames(recording: Recording, encoding: PoseEncoding, *, held_out: b
 def _samples(recording: Recording, descriptors: Array) -> Samples:
     return Samples(
         descriptors=torch.from_numpy(descriptors).float(),
-        meshes=torch.from_numpy(recording.meshes(np.arange(recording.count()))),
+        meshes=lambda rows: torch.from_numpy(recording.meshes(rows)),
         subbands=recording.subbands,
         mean_texture=torch.from_numpy(recording.mean_texture()).float(),
         weights=_weights(recording),

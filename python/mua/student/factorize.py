@@ -96,8 +96,9 @@ def separable_blendshapes(
     A model of rank R spans at most R directions over frames, so the sweeps run on the leading 2 R of them, which is
     several times cheaper.
     """
-    weighted = (x if worth is None else x * worth).flatten(1)
-    u, s, v = truncated_svd(weighted, 2 * rank, generator=generator, iterations=COMPRESSING)
+    u, s, v = truncated_svd(
+        (x if worth is None else x * worth).flatten(1), 2 * rank, generator=generator, iterations=COMPRESSING
+    )
     compressed = (s[:, None] * v).unflatten(1, x.shape[1:])
     if worth is not None:
         compressed = compressed / worth

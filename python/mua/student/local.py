@@ -21,6 +21,7 @@ from mua.student.model import Branch
 from mua.student.targets import Targets
 
 POSE_FOR_LIGHT = 0.25  # weight of joints' local rotations relative to their rotations in the world
+NEGLIGIBLE = 2e-3  # share of all variation; a part that has less of it is fitted with the one above it
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,6 +33,7 @@ class Parts:
     coarse: Tensor  # [n, n] int64, the part of each sample of LL and D3
     fine: Tensor  # [2n, 2n] int64, of D2
     vertices: Tensor  # [V] int64
+    above: Tensor  # [P] int64, the part of the joint above, which comes before it; the first has none
 
     def reach(self, fade: float, *, light: bool = False) -> Tensor:
         """Factors [P, D] of the descriptor's entries as each part sees them; 1 for its own joint.
@@ -55,14 +57,29 @@ class Locality:
     """How the targets of a regression are a sum over body parts."""
 
     steps: Tensor  # [P, D] int64, of the parts
+    above: Tensor  # [P] int64, of the parts
     reach: Tensor  # [P, D]
     shares: Tensor  # [P, K, K]; coordinates @ shares[p] are the coordinates of part p's samples alone
+
+    def fewer(
+        self,
+        goal: Tensor,  # [F, K]
+    ) -> tuple[Tensor, Tensor]:
+        """Reach and shares of the parts that vary in `goal`; others, mostly fingers, are added to the part above."""
+        shares, held = self.shares.clone(), torch.ones_like(self.above, dtype=torch.bool)
+        least = NEGLIGIBLE * goal.square().sum()
+        for part in range(len(shares) - 1, 0, -1):  # first what lies below
+            if (goal @ shares[part]).square().sum() < least:
+                shares[self.above[part]] += shares[part]
+                held[part] = False
+        return self.reach[held], shares[held]
 
 
 def body_parts(rig: Rig, encoding: PoseEncoding) -> Parts:
     """The parts of a character, one for each encoded joint that some sample hangs on."""
     seen = [rig.skeleton.root, *sorted({*encoding.joints, *encoding.translated})]
     steps = joint_steps(rig.skeleton, seen)
+    above = (steps == 1).argmax(axis=1)  # of the joints next to one, that above it comes first
     steps[:, 0] = np.minimum(steps[:, 0], 1)  # the root, where the body goes and how it leans, is near every part
     weights = np.zeros((len(rig.mesh.vertices), len(seen)))
     carrier = nearest_encoded(rig.skeleton, seen)
@@ -81,6 +98,7 @@ def body_parts(rig: Rig, encoding: PoseEncoding) -> Parts:
         coarse=torch.from_numpy(sample_owners(image, COARSE_TEXELS)),
         fine=torch.from_numpy(sample_owners(image, FINE_TEXELS)),
         vertices=torch.from_numpy(weights.argmax(1)),
+        above=torch.from_numpy(above),
     )
 
 
@@ -128,7 +146,7 @@ def texture_locality(
             shapes = torch.einsum("kr,sri,srj->skij", alpha[:, channel], h, w)
             for band in shapes.flatten(2):
                 _add_shares(shares, band * weights[channel], owner)
-    return Locality(parts.steps.to(device), parts.reach(fade, light=light).to(device), shares)
+    return _locality(parts, shares, fade=fade, light=light)
 
 
 def sample_locality(
@@ -143,7 +161,12 @@ def sample_locality(
     shares = torch.zeros(len(parts.steps), len(basis), len(basis), device=basis.device)
     for value in range(basis.shape[2]):
         _add_shares(shares, basis[..., value], owners.to(basis.device))
-    return Locality(parts.steps.to(basis.device), parts.reach(fade, light=light).to(basis.device), shares)
+    return _locality(parts, shares, fade=fade, light=light)
+
+
+def _locality(parts: Parts, shares: Tensor, *, fade: float, light: bool) -> Locality:
+    reach = parts.reach(fade, light=light)
+    return Locality(*(own.to(shares.device) for own in (parts.steps, parts.above, reach, shares)))
 
 
 def _add_shares(

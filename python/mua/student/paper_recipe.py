@@ -11,7 +11,7 @@ import torch
 from torch import Tensor, nn
 
 from mua.channels import COARSE_TEXELS
-from mua.student.coarse import set_pca
+from mua.student.coarse import MeshPca
 from mua.student.finetune import draw_frames, finetune, weighted
 from mua.student.model import Branch, Coarse, linear_layers
 from mua.student.settings import Settings
@@ -26,13 +26,12 @@ BASIS_START = 0.1  # share of a channel's spread
 def fit_coarse_from_noise(
     coarse: Coarse,
     inputs: Tensor,  # [F, K] components of descriptors
-    meshes: Tensor,  # [F, V, 3] canonical vertices, metres
+    pca: MeshPca,  # that `set_pca` has set
     *,
     settings: Settings,
     run: Run,
 ) -> None:
-    """Set the PCA of `coarse` and fit F_temp by the L1 error of its coefficients (paper, Eq. L_coarse)."""
-    pca = set_pca(coarse, meshes, run)
+    """Fit F_temp of `coarse` by the L1 error of the coefficients of its PCA (paper, Eq. L_coarse)."""
     start_mlp(coarse.mlp, run.generator)
 
     def loss(model: nn.Module) -> Tensor:

@@ -145,7 +145,7 @@ def fit_local(
     if locality is None:
         return through(z, goal)
     turns, terms = [], []
-    for reach, share in zip(locality.reach, locality.shares, strict=True):
+    for reach, share in zip(*locality.fewer(goal), strict=True):
         seen = visible(inputs * reach)
         turn = (back * reach)[:, seen] @ whitening((inputs * reach)[:, seen])
         turn = turn[:, leading(z @ turn)]

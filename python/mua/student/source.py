@@ -14,7 +14,7 @@ GPU_SHARE = 0.5  # share of a GPU's free memory for subbands; the rest is for th
 READ_FRAMES = 64  # at once
 CPU = torch.device("cpu")
 
-Source = Callable[[slice, Tensor], Bands]  # gives the subbands of channels and rows of the training frames
+Source = Callable[[slice, Tensor], Bands]  # copies of the subbands of channels and rows of the training frames
 
 
 def hold(

@@ -13,7 +13,7 @@ from mua.errors import InputError
 from mua.rig.bones import figure_scale
 from mua.student.bases import factorize_branch
 from mua.student.branches import fit_apart, side_by_side
-from mua.student.coarse import fit_coarse
+from mua.student.coarse import fit_coarse, set_pca
 from mua.student.components import Components
 from mua.student.conditioned import fold
 from mua.student.finetune import BASIS_RATE, finetune, picture_loss, relative, subband_loss
@@ -42,7 +42,7 @@ class Samples:
     """F training frames as inputs of the distillation."""
 
     descriptors: Tensor  # [F, D] from `mua.pose.descriptor`
-    meshes: Tensor  # [F, V, 3] canonical vertices, metres
+    meshes: Callable[[Tensor], Tensor]  # canonical vertices [R, V, 3], metres, of rows [R]; all take much memory
     subbands: Source
     mean_texture: Tensor  # [N, 23] mean over the training frames at the valid texels
     parts: Parts | None = None  # body parts of the character; without them, or with a fade of 1, nothing is local
@@ -75,7 +75,7 @@ def train(
         require_earlier(only, settings, checkpoints)
     if not processes.first:
         report = _silent
-    size = figure_scale(samples.meshes[0].numpy())
+    size = figure_scale(samples.meshes(torch.arange(1))[0].numpy())
     run = Run(torch.Generator().manual_seed(settings.seed), checkpoints, report, device, processes, size)
     student.to(device)
     student.load_state_dict(run.once("components", student.read_buffers), strict=False)
@@ -94,7 +94,12 @@ def train(
     looking = Lock()
 
     def fit_mesh(run: Run) -> None:
-        start(student.coarse, inputs, samples.meshes.to(device), settings=settings, run=run.alone("coarse mesh"))
+        own = run.alone("coarse mesh")
+        meshes = samples.meshes(torch.arange(len(samples))).to(device)
+        pca = set_pca(student.coarse, meshes, own, None if random else counts)
+        del meshes
+        release_memory()
+        start(student.coarse, inputs, pca, settings=settings, run=own)
         release_memory()
 
     def look(run: Run) -> Bands | None:
@@ -114,11 +119,11 @@ def train(
         )
         fit(branch, inputs, source, channels=channels, settings=settings, name=name, run=run.alone(name))
 
-    tasks: list[Callable[[Run], None]] = [fit_mesh] if only in (None, "coarse") else []
-    if only != "coarse":
-        branches = zip(BRANCHES, student.branches, (GEOMETRY, APPEARANCE), strict=True)
-        tasks += [partial(fit_named, *branch) for branch in branches]
-    fit_apart(tasks, run)
+    branches = zip(BRANCHES, student.branches, (GEOMETRY, APPEARANCE), strict=True)
+    geometry, appearance = (partial(fit_named, *branch) for branch in branches)
+    both = [appearance, geometry]
+    # two at once: appearance takes as long as the others, and measures what geometry waits for but the mesh does not
+    fit_apart([fit_mesh] if only == "coarse" else both if only else [appearance, fit_mesh, geometry], run)
     if only is not None:
         return
     low = student.mean_lowpass() if counts is None else mean_lowpass(student, samples)

@@ -33,12 +33,13 @@ def while_next(work: Callable[[A], B], items: Iterable[A]) -> Iterator[B]:
             yield at_work.result()
 
 
-def together(tasks: Sequence[Callable[[], None]], *, stop: Callable[[], None]) -> None:
-    """Run all tasks at once, each in a thread of its own, and raise the first error of any.
+def together(tasks: Sequence[Callable[[], None]], *, stop: Callable[[], None], threads: int) -> None:
+    """Run tasks in their order, so many at once, and raise the first error of any.
 
-    `stop` is called then, and on an interrupt: it has to make the others end, which is waited for.
+    `stop` is called then, and on an interrupt: it has to make those that run end, which is waited for; others do not
+    begin.
     """
-    with ThreadPoolExecutor(len(tasks)) as pool:
+    with ThreadPoolExecutor(threads) as pool:
         futures = [pool.submit(task) for task in tasks]
         try:
             ended, _ = wait(futures, return_when=FIRST_EXCEPTION)
@@ -46,4 +47,5 @@ def together(tasks: Sequence[Callable[[], None]], *, stop: Callable[[], None]) -
                 future.result()
         except BaseException:
             stop()
+            pool.shutdown(wait=False, cancel_futures=True)
             raise

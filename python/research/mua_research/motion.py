@@ -15,7 +15,7 @@ from mua.pose.descriptor import describe, heading_of
 from mua.recording import Recording
 from mua.rig.bones import figure_scale
 from mua.rig.rig import Rig
-from mua.student.coarse import fit_coarse
+from mua.student.coarse import fit_coarse, set_pca
 from mua.student.distil import prepare
 from mua.student.model import Student
 from mua.student.settings import Settings
@@ -34,9 +34,9 @@ def training_frames(recording: Recording, settings: Settings, *, run: Run) -> Tr
     student, samples = prepare(recording, settings)
     student.to(run.device)
     inputs = student.normalize(samples.descriptors.to(run.device))
-    meshes = samples.meshes.to(run.device)
+    pca = set_pca(student.coarse, samples.meshes(torch.arange(len(samples))).to(run.device), run)
     components = student.components
-    fit_coarse(student.coarse, inputs, meshes, components=components, settings=settings, run=run, parts=samples.parts)
+    fit_coarse(student.coarse, inputs, pca, components=components, settings=settings, run=run, parts=samples.parts)
     student.requires_grad_(False).cpu()
     frames = len(samples)
     bands = hold(samples.subbands, slice(0, CHANNELS), frames=frames, size=settings.texels)
