@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
+from types import ModuleType
 
 import numpy as np
 import pytest
@@ -16,11 +17,13 @@ from mua.avatar.decode import decode_clip_frame
 from mua.baking.assemble import assemble
 from mua.channels import ATTRIBUTES, CHANNELS
 from mua.errors import InputError
+from mua.pose import components
 from mua.pose.clip import RANGE_OF_MOTION, REST
 from mua.pose.descriptor import describe
 from mua.pose.skeleton import Pose
 from mua.recording import Recording, TeacherWriter
 from mua.rig.moving import moving_joints
+from mua.student import distil as student_of
 from mua.student.distil import distil, prepare
 from mua.student.model import Student
 from mua.student.settings import Settings
@@ -131,6 +134,19 @@ def test_a_recording_that_grew_is_distilled_anew(tmp_path: Path) -> None:
     heard = Heard()
     distilled(recording(tmp_path / "long", training=3), tmp_path / "student", heard)
     assert set(heard.stages) == ALL
+
+
+@pytest.mark.parametrize(("module", "name", "value"), [(components, "FORGONE", 0.5), (student_of, "REST_WEIGHT", 0.6)])
+def test_what_was_distilled_by_other_rules_is_distilled_anew(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, module: ModuleType, name: str, value: float
+) -> None:
+    source = recording(tmp_path / "recording", training=2, names=("own", f"{RANGE_OF_MOTION}{REST}"))
+    distilled(source, tmp_path / "student", Heard())
+    monkeypatch.setattr(module, name, value)
+    heard = Heard()
+    found = distilled(source, tmp_path / "student", heard)
+    assert set(heard.stages) == ALL
+    assert same(found, distilled(source, tmp_path / "fresh", Heard()))
 
 
 def test_joints_move_the_mesh_themselves_or_through_a_descendant() -> None:

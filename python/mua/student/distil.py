@@ -61,7 +61,8 @@ def distil(
     stage alone starts from checkpoints that are not in `directory`.
     """
     student, samples = prepare(recording, settings)
-    key = run_key((settings, recording.fingerprint()), [student.mean, student.scale])
+    counted = () if samples.weights is None else (samples.weights,)
+    key = run_key((settings, recording.fingerprint(), len(student.components)), [student.mean, student.scale, *counted])
     checkpoints = Checkpoints(directory, key)
     if processes.first:
         checkpoints.remove_leftovers(name for names in stages(settings).values() for name in names)
