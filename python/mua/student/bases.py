@@ -6,6 +6,7 @@ from functools import partial
 import torch
 from torch import Tensor
 
+from mua.student.branches import fit_apart
 from mua.student.factorize import blendshapes, frame_weights, separable_blendshapes
 from mua.student.model import Alphas, Branch, outer_products
 from mua.student.settings import Settings
@@ -42,19 +43,25 @@ def factorize_branch(
     ranks, room = branch.ranks, partial(torch.empty, device=run.device)
     alphas = Alphas(*(room(frames, branch.channels, rank) for rank in (ranks.ll, ranks.d3, ranks.d2)))
     energy = room(branch.channels)
-    for done, channel in enumerate(owned, start=1):
+    done: list[int] = []
+
+    def solve(channel: int, run: Run) -> None:
         bands = Bands(*(band.to(run.device) for band in source(slice(channel, channel + 1), torch.arange(frames))))
         bands = bands if wavelet is None else _in_texture(bands, wavelet)
-        generator = run.alone(f"{stage} {channel}").generator  # whichever process solves for it draws the same numbers
+        generator = run.alone(f"{stage} {channel}").generator  # whoever solves for it draws the same numbers
         worth = None if sensitivities is None else worth_of(sensitivities, channel)
-        solved, energy[channel] = factorize_channel(
-            branch, channel, bands, sweeps=settings.sweeps, generator=generator, worth=worth, counts=counts
-        )
-        if wavelet is not None:
-            to_subbands(branch, channel, wavelet)
+        with torch.no_grad():  # of this thread
+            solved, energy[channel] = factorize_channel(
+                branch, channel, bands, sweeps=settings.sweeps, generator=generator, worth=worth, counts=counts
+            )
+            if wavelet is not None:
+                to_subbands(branch, channel, wavelet)
         for level, own in zip(alphas, solved, strict=True):
             level[:, channel] = own
-        run.report(Progress(stage, done, len(owned), None, done / (time.monotonic() - started)))
+        done.append(channel)
+        run.report(Progress(stage, len(done), len(owned), None, len(done) / (time.monotonic() - started)))
+
+    fit_apart([partial(solve, channel) for channel in owned], run)
     for channel in range(branch.channels):
         found = (*branch.channel(channel), *(level[:, channel] for level in alphas), energy[channel])
         run.processes.broadcast(*found, source=run.processes.owner(channel))

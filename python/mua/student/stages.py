@@ -3,7 +3,6 @@
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
-from threading import Lock
 
 import torch
 from torch import Tensor
@@ -88,10 +87,7 @@ def train(
         if random
         else partial(fit_coarse, components=components, parts=samples.parts, weights=counts)
     )
-    warm = partial(
-        fit_branch, components=components, parts=samples.parts, until=only, frames=counts, wavelet=student.wavelet
-    )
-    looking = Lock()
+    warm = partial(fit_branch, components=components, parts=samples.parts, frames=counts, wavelet=student.wavelet)
 
     def fit_mesh(run: Run) -> None:
         own = run.alone("coarse mesh")
@@ -102,12 +98,10 @@ def train(
         start(student.coarse, inputs, pca, settings=settings, run=own)
         release_memory()
 
-    def look(run: Run) -> Bands | None:
-        with looking:  # the branch that comes first measures what both take
-            return _sensitivities(samples, run.alone(SENSITIVITIES))
-
-    def fit_named(name: str, branch: Branch, channels: slice, run: Run) -> None:
-        fit = fit_branch_from_noise if random else partial(warm, sensitivities=look(run))
+    def fit_named(name: str, branch: Branch, channels: slice, run: Run, until: StageName | None = only) -> None:
+        fit = (
+            fit_branch_from_noise if random else partial(warm, until=until, sensitivities=_sensitivities(samples, run))
+        )
         source = hold(
             samples.subbands,
             channels,
@@ -119,11 +113,15 @@ def train(
         )
         fit(branch, inputs, source, channels=channels, settings=settings, name=name, run=run.alone(name))
 
+    if only == "coarse":
+        fit_mesh(run)
+        return
     branches = zip(BRANCHES, student.branches, (GEOMETRY, APPEARANCE), strict=True)
     geometry, appearance = (partial(fit_named, *branch) for branch in branches)
-    both = [appearance, geometry]
-    # two at once: appearance takes as long as the others, and measures what geometry waits for but the mesh does not
-    fit_apart([fit_mesh] if only == "coarse" else both if only else [appearance, fit_mesh, geometry], run)
+    if side_by_side(run) and not random:  # their channels are shared out, so that the fits below take alike
+        for fit in (appearance, geometry):
+            fit(run, until="bases")
+    fit_apart([appearance, geometry] if only else [appearance, geometry, fit_mesh], run)
     if only is not None:
         return
     low = student.mean_lowpass() if counts is None else mean_lowpass(student, samples)
@@ -147,7 +145,7 @@ def mean_lowpass(student: Student, samples: Samples) -> Tensor:
 
 def _sensitivities(samples: Samples, run: Run) -> Bands | None:
     """The samples' sensitivities, kept for a resumed run; None where they measure none."""
-    measure = samples.sensitivities
+    measure, run = samples.sensitivities, run.alone(SENSITIVITIES)
     if measure is None:
         return None
     return Bands(**run.once(SENSITIVITIES, lambda: measure(run)._asdict()))
