@@ -100,7 +100,7 @@ PRESETS = {
         frames=1500,
         **vars(LEAN_SIZES),
         sweeps=10,
-        regression=Schedule(steps=4000, batch=512, lr=2e-3, epochs=3000),
+        regression=Schedule(steps=4000, batch=384, lr=2e-3, epochs=3000),
         finetune=Schedule(steps=1500, batch=16, lr=5e-4, warm_up=0.1, epochs=72),
         pictures=32,
     ),
