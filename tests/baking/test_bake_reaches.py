@@ -5,6 +5,7 @@ Recording, training and comparison, which take minutes, are stand-ins that keep 
 
 import json
 from collections.abc import Callable
+from contextlib import nullcontext
 from pathlib import Path
 from unittest.mock import Mock
 
@@ -108,7 +109,7 @@ def run(
         late = ran[arguments] = Late()
 
         def compared(
-            character: Character, clips: list[Clip], *, texels: int, teacher: object = None, faces: bool = False
+            character: Character, clips: list[Clip], *, texels: int, teacher: object = None, faces: object = None
         ) -> tuple[None, tuple[str, ...]]:
             late.character, late.clips, late.compared = character, tuple(clips), texels
             return None, ()
@@ -119,7 +120,7 @@ def run(
             late.character, late.texels, late.seed = character, texels, seed
 
         def recorded(
-            make: Callable[[], None], _: str, settings: BakeSettings, planned: list[PlannedClip], __: object
+            make: Callable[[], None], _: str, settings: BakeSettings, planned: list[PlannedClip], *__: object
         ) -> None:
             make()
             late.recorded_with, late.planned = settings, tuple(planned)
@@ -133,6 +134,7 @@ def run(
         monkeypatch.setattr(pipeline, "StillTeacher", Mock())
         monkeypatch.setattr(fitting, "fit", lambda *_, **__: np.zeros((1, 9)))
         monkeypatch.setattr(pipeline, "SimulatedTeacher", teacher)
+        monkeypatch.setattr(pipeline, "waiting_workers", lambda *_: nullcontext([]))
         monkeypatch.setattr(pipeline, "recorded", recorded)
         monkeypatch.setattr(pipeline, "distil_student", distil_student)
         shown = ("--check",) if "--check" in arguments else ()
