@@ -7,11 +7,10 @@ from typing import Unpack
 from mua.asset.storable import require_names
 from mua.atlas.detail import Detail, UvMode
 from mua.atlas.surfaces import Surfaces
-from mua.atlas.uv import build_atlas
 from mua.baking.settings import BakeSettings
 from mua.characters.facing import AS_SHOWN
 from mua.characters.figure_size import AS_FOUND, FigureSize
-from mua.characters.read import Reading, read_surfaces
+from mua.characters.read import Reading, read_character
 from mua.errors import InputError
 from mua.motion.face import with_face
 from mua.motion.load import counted, load_motions, unique_names
@@ -25,10 +24,12 @@ from mua.rig.character import Character
 ATLAS = 1024  # texels of the base-colour atlas along a side
 
 
-def load_baked_character(settings: BakeSettings, *, read: Callable[[Surfaces], None] | None = None) -> Character:
+def load_baked_character(
+    settings: BakeSettings, *, read: Callable[[Surfaces], None] = lambda surfaces: None
+) -> Character:
     """The character of a bake or a check, with the layout and size that its settings ask for.
 
-    `read` is called with what a file holds before that is laid out anew.
+    `read` is called as by `read_character`.
     """
     return load_character(
         settings.character,
@@ -52,7 +53,7 @@ def load_character(
     seed: int,
     detail: Detail | None = None,
     size: FigureSize = AS_FOUND,
-    read: Callable[[Surfaces], None] | None = None,
+    read: Callable[[Surfaces], None] = lambda surfaces: None,
     **reading: Unpack[Reading],
 ) -> Character:
     """The character in the file at `path` less what `leave_out` names, or the procedural one where no path is given.
@@ -61,10 +62,7 @@ def load_character(
     and for names that no avatar file may have.
     """
     if path is not None:
-        surfaces = read_surfaces(path, size=size, **reading)
-        if read is not None:
-            read(surfaces)
-        character = build_atlas(surfaces, uv=uv, size=ATLAS, detail=detail)
+        character = read_character(path, uv=uv, atlas_size=ATLAS, detail=detail, size=size, read=read, **reading)
         require_names(str(path), [character.name], character.skeleton.names, ())
         return character
     if size != AS_FOUND:

@@ -1,6 +1,6 @@
 """One way in for characters of any file format."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TypedDict, Unpack
 
@@ -79,7 +79,13 @@ def read_character(
     atlas_size: int = 2048,
     detail: Detail | None = None,
     size: FigureSize = AS_FOUND,
+    read: Callable[[Surfaces], None] = lambda surfaces: None,
     **reading: Unpack[Reading],
 ) -> Character:
-    """Read a rigged, textured character and bring its materials into one atlas of `atlas_size` texels a side."""
-    return build_atlas(read_surfaces(path, size=size, **reading), uv=uv, size=atlas_size, detail=detail)
+    """Read a rigged, textured character and bring its materials into one atlas of `atlas_size` texels a side.
+
+    `read` is called with what the file holds before that is laid out anew.
+    """
+    surfaces = read_surfaces(path, size=size, **reading)
+    read(surfaces)
+    return build_atlas(surfaces, uv=uv, size=atlas_size, detail=detail)
