@@ -79,10 +79,18 @@ def test_motion_that_a_bake_refuses_is_checked_and_leaves_a_mapping_to_fill(tmp_
     assert "2 clips: holds 3 frames, though it says 2; all are read." in text
 
 
-def test_a_character_with_neither_motion_nor_clips_is_checked_as_it_stands(tmp_path: Path) -> None:
-    run(column_file(tmp_path, clip=False), "--check", "--texels", 96, "-o", tmp_path / "a.muaavatar")
+@pytest.mark.parametrize(("range_option", "poses"), [((), 4), (("--motion-range", "none"), 1)])
+def test_a_character_without_motion_is_checked_in_poses_that_are_made_for_its_rig(
+    tmp_path: Path, range_option: tuple[str, ...], poses: int
+) -> None:
+    character, figures = column_file(tmp_path, clip=False), tmp_path / "a.json"
+    given = ("--check", "--texels", 64, "-o", tmp_path / "a.muaavatar", "--json", figures)
+    text = run(character, *given, *range_option)
     assert not (tmp_path / "a_mapping.json").exists()
     assert (tmp_path / "a_check.png").exists()
+    shown = [pose["pose"] for pose in json.loads(figures.read_text())["fidelity"]["poses"]]
+    assert (shown[0], len(shown)) == ("as the file stands", poses)
+    assert ("holds no animation" in " ".join(text.split())) is (poses > 1)
 
 
 def test_the_procedural_character_is_checked_without_a_picture(tmp_path: Path) -> None:

@@ -17,7 +17,7 @@ from mua.baking.contact_sheet import CELL
 from mua.baking.pipeline import bake
 from mua.baking.ranges import clips_of, planned_range, range_frames, settings_for
 from mua.baking.settings import BakeSettings, MotionRange
-from mua.baking.sources import load_character
+from mua.baking.sources import load_baked_character, load_character
 from mua.errors import InputError
 from mua.fidelity.strips import CAPTION
 from mua.pose.clip import Clip, is_range
@@ -85,11 +85,42 @@ def test_a_person_without_animation_has_the_range_as_its_motion(tmp_path: Path) 
     figure = character(RIGS["T-pose"])
     clips, (note,) = clips_of(bake_settings(tmp_path), figure)
     assert len(clips) == len({clip.name for clip in clips}) > 5
+    assert clips[0].name == "stand"  # with which players begin
     assert sum(map(len, clips)) > 2 * 240
     assert "holds no animation; its motion is a built-in range of motion" in note
     assert planned_range(bake_settings(tmp_path), figure, clips, 240) == []
     with pytest.raises(InputError, match="rig: holds no animation; give a file or directory with --motion"):
         clips_of(bake_settings(tmp_path, motion_range="none"), figure)
+
+
+def with_take(directory: Path, *, turn: float = 0.0, lift: float = 0.0, weight: float | None = None) -> BakeSettings:
+    """A bake of the column, whose only take turns its spine, lifts its hips and shows an expression, if anything."""
+    glb, turned = gltf_files.body(), [0, 0, np.sin(turn / 2), np.cos(turn / 2)]
+    gltf_files.animate(glb, 1, "rotation", times=[0, 1], values=[[0, 0, 0, 1], turned], name="Take 001")
+    gltf_files.animate(glb, 0, "translation", times=[0, 1], values=[[0, 0, 0], [0, lift, 0]], name="Take 001")
+    if weight is not None:
+        lean = np.where(gltf_files.POINTS[:, 1:2] > 1, [[0.1, 0, 0]], 0)
+        gltf_files.primitive(glb)["targets"] = [{"POSITION": glb.accessor(lean)}]
+        mesh = next(number for number, node in enumerate(glb.json["nodes"]) if "mesh" in node)
+        gltf_files.animate(glb, mesh, "weights", times=[0, 1], values=[0, weight], name="Take 001")
+    return replace(bake_settings(directory), character=glb.save(directory / "take.glb"))
+
+
+def test_a_take_of_one_pose_is_no_animation(tmp_path: Path) -> None:
+    """Programs write one with each rest pose that they export."""
+    asked = with_take(tmp_path, weight=0.0)
+    figure = load_baked_character(asked)
+    assert figure.clips == ()
+    assert "Take 001: shows one pose, which counts as no animation." in figure.notes
+    assert "Take 001" not in [clip.name for clip in clips_of(asked, figure)[0]]
+    (kept,) = load_baked_character(replace(asked, motion_range="none")).clips
+    assert kept.name == "Take 001"
+
+
+@pytest.mark.parametrize("moved", [{"turn": 0.1}, {"lift": 0.05}, {"weight": 1.0}])
+def test_a_take_that_moves_anything_is_the_characters_motion(tmp_path: Path, moved: dict[str, float]) -> None:
+    asked = with_take(tmp_path, **moved)
+    assert [clip.name for clip in clips_of(asked, load_baked_character(asked))[0]] == ["Take 001"]
 
 
 def test_only_motion_of_a_user_is_followed_closely(tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ from people import LIMBS, angle, bone, person, still, world
 
 from mua import rotation
 from mua.arrays import Array
-from mua.motion.range import motion_range
+from mua.motion.range import motion_range, standing
 from mua.motion.range.angles import INDEX, LIMITS
 from mua.motion.range.mixed import mixed, random_poses, within
 from mua.motion.range.moves import MOVES
@@ -247,6 +247,21 @@ def animal() -> Skeleton:
     turns = skeleton.bind_rotations.copy()
     turns[0] = rotation.multiply(turn, turns[0])
     return replace(skeleton, bind_rotations=turns)
+
+
+def test_whoever_stands_at_ease_breathes_with_lowered_arms_and_ends_as_they_began() -> None:
+    for skeleton in RIGS.values():
+        (clip,) = standing(character(skeleton))
+        turned, at = world(skeleton, clip)
+        np.testing.assert_allclose(abs(np.sum(turned[0] * turned[-1], axis=-1)), 1, atol=1e-9)
+        np.testing.assert_allclose(at[0], at[-1], atol=1e-9)
+        for side in SIDES:
+            assert bone(skeleton, clip, f"{side}Arm", f"{side}ForeArm")[:, 1].max() < -np.cos(np.radians(25))
+            leg = at[:, skeleton.names.index(f"{side}Foot")]
+            assert np.ptp(leg, axis=0).max() < 0.02 * np.ptp(at[0, :, 1])
+        chest = skeleton.names.index("Spine2")
+        assert 2 < np.degrees(2 * np.arccos(abs(np.sum(turned[0, chest] * turned[:, chest], axis=-1)).min())) < 8
+    assert standing(character(animal())) == []
 
 
 def test_each_joint_of_an_animal_moves_alone_and_with_others() -> None:

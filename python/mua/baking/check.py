@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +11,7 @@ from PIL import Image
 
 from mua.arrays import Array
 from mua.baking.listener import Listener
+from mua.baking.ranges import clips_of
 from mua.baking.settings import BakeSettings
 from mua.baking.sources import faced, load_baked_character
 from mua.characters.expression_file import write_expression_names
@@ -32,6 +33,7 @@ from mua.rig.character import Character
 from mua.teachers.simulated.still import StillTeacher
 
 FAST = 1  # of a PNG's levels: a tenth larger than by the best, in a third of the time
+MADE = 30  # recorded frames whose range of motion is made where a character has no motion: all of its moves begin
 WITHOUT_FILE = "the procedural character has no file, so there is nothing to compare its splats with"
 
 
@@ -71,7 +73,8 @@ def _check(
     loaded = _loaded(settings, character)
     qualities = tuple(_quality(settings, character, motion) for motion in loaded)
     listener.stage("comparison with source")
-    clips, of_face = faced(character, [m.clip for m in loaded], settings.face)
+    clips, made = _clips(settings, character, loaded)
+    clips, of_face = faced(character, clips, settings.face)
     fidelity, warnings = fidelity_of(character, clips, texels=settings.student.texels, faces=faces)
     pairs, unmatched = _matched(character, loaded) if settings.motions else ((), ())
     written = []
@@ -92,7 +95,7 @@ def _check(
         motions=qualities,
         matched=pairs,
         unmatched=unmatched,
-        notes=counted((*character.notes, *_notes(loaded), *of_face), clips),
+        notes=counted((*character.notes, *made, *_notes(loaded), *of_face), clips),
         warnings=(
             *_refusals(settings, character, loaded),
             *warnings,
@@ -150,6 +153,15 @@ def write_json(path: Path, content: object) -> None:
 
 def _without_flaws(quality: MotionQuality) -> dict[str, Any]:
     return {name: value for name, value in asdict(quality).items() if name != "flaws"}
+
+
+def _clips(
+    settings: BakeSettings, character: Character, loaded: Sequence[LoadedMotion]
+) -> tuple[list[Clip], list[str]]:
+    """The clips that splats and source are compared in, and notes: without any, a few that a bake makes for the rig."""
+    if loaded or settings.motion_range == "none":
+        return [motion.clip for motion in loaded], []
+    return clips_of(replace(settings, student=replace(settings.student, frames=MADE)), character)
 
 
 def _loaded(settings: BakeSettings, character: Character) -> list[LoadedMotion]:

@@ -7,7 +7,7 @@ from mua.baking.plan import plan
 from mua.baking.settings import BakeSettings
 from mua.baking.sources import load_clips
 from mua.characters.rigid_skeleton import rest_pose
-from mua.motion.range import motion_range, moved_by
+from mua.motion.range import motion_range, moved_by, standing
 from mua.pose.clip import RANGE_OF_MOTION, REST, Clip
 from mua.recording import PlannedClip
 from mua.rig.character import Character
@@ -25,6 +25,7 @@ def clips_of(settings: BakeSettings, character: Character) -> tuple[list[Clip], 
         return load_clips(character, settings.motions, mapping=settings.mapping, feet=settings.feet)
     clips = motion_range(character, (), frames=settings.student.frames, seed=settings.student.seed, short=True)
     clips = [replace(clip, name=clip.name.removeprefix(RANGE_OF_MOTION)) for clip in clips]  # they are the motion
+    clips = [*standing(character), *clips]  # players begin with the first
     note = f"{character.name}: holds no animation; its motion is a built-in range of motion made for its rig"
     return clips, [f"{note}. --motion adds motion of your own."]
 

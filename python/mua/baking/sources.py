@@ -1,8 +1,11 @@
 """What a bake starts from: a character, and clips of motion on its skeleton."""
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Unpack
+
+import numpy as np
 
 from mua.asset.storable import require_names
 from mua.atlas.detail import Detail, UvMode
@@ -16,12 +19,14 @@ from mua.motion.face import with_face
 from mua.motion.load import counted, load_motions, unique_names
 from mua.motion.planted_feet import Feet
 from mua.motion.quality import measure_motion
+from mua.motion.range import moved_by
 from mua.pose.clip import Clip
 from mua.pose.encoding import RATE
 from mua.pose.resample import resample
 from mua.rig.character import Character
 
 ATLAS = 1024  # texels of the base-colour atlas along a side
+LED = 0.001  # of the figure's height: joints that clips move less are still
 
 
 def load_baked_character(
@@ -31,7 +36,7 @@ def load_baked_character(
 
     `read` is called as by `read_character`.
     """
-    return load_character(
+    character = load_character(
         settings.character,
         uv=settings.uv,
         seed=settings.student.seed,
@@ -44,6 +49,21 @@ def load_baked_character(
         expression_names=settings.expression_names,
         smplx=settings.smplx,
     )
+    return character if settings.motion_range == "none" else _without_still_clips(character)
+
+
+def _without_still_clips(character: Character) -> Character:
+    """The character, as one without animation where its clips show one pose: programs write a rest pose as a take."""
+    clips = character.clips
+    if not clips or moved_by(clips, range(len(character.skeleton.names))):
+        return character
+    paths = np.concatenate([clip.translations for clip in clips])
+    weights = [clip.expressions for clip in clips if clip.expressions is not None]
+    height = np.ptp(character.mesh.vertices[:, 1])
+    if np.ptp(paths, axis=0).max() > LED * height or any(np.ptp(one, axis=0).any() for one in weights):
+        return character
+    note = f"{', '.join(clip.name for clip in clips)}: shows one pose, which counts as no animation."
+    return replace(character, clips=(), notes=(*character.notes, note))
 
 
 def load_character(

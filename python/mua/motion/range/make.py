@@ -12,7 +12,7 @@ from mua.motion.match import Matches, match_joints
 from mua.motion.range.any_rig import alone, swung, together
 from mua.motion.range.body import BODY, ROLES
 from mua.motion.range.mixed import mixed
-from mua.motion.range.moves import MOVES, other_side
+from mua.motion.range.moves import MOVES, STAND, other_side
 from mua.motion.range.played import RATE, played
 from mua.motion.retarget import retarget
 from mua.motion.source import SourceMotion
@@ -54,6 +54,15 @@ def motion_range(
             found = _any_rig(skeleton, joints, rest, own)
             made += _shortened(found, frames) if short else found
     return unique_names([replace(clip, name=f"{RANGE_OF_MOTION}{clip.name}") for clip in made])
+
+
+def standing(character: Character) -> list[Clip]:
+    """A clip of a person who stands at ease and breathes, and ends as it begins; none for a rig that is no person."""
+    skeleton = character.skeleton
+    matches = match_joints(BODY, skeleton, source_stated=ROLES, target_stated=character.roles)
+    if not _is_person(skeleton, matches):
+        return []
+    return [_put_on(played("stand", STAND), skeleton, matches, _rest(skeleton, ()), (), np.random.default_rng(0))]
 
 
 def moved_by(clips: Sequence[Clip], joints: Iterable[int]) -> list[int]:

@@ -27,6 +27,12 @@ def with_turn(keys: Sequence[Key], turn: float) -> tuple[Key, ...]:
     return tuple(replace(one, angles=one.angles | {"turn": step}) for one, step in zip(keys, steps, strict=True))
 
 
+STAND = (  # at ease: a breath and a small look to either side; it ends as it begins, so that it can be repeated
+    key(CALM),
+    key(1.5, both(shrug=2.5, lift=15, elbow=14), bend=-3, nod=1, look=4),
+    key(1.9, left(elbow=13) | right(elbow=15), bend=1, look=-4, twist=-1.5),
+    key(0.6),
+)
 STEP = (
     key(
         CALM,
