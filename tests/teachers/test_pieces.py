@@ -1,4 +1,4 @@
-"""Which separate pieces of a character are rigid: plates of armour, and no capes."""
+"""Which separate pieces of a character are rigid: plates of armour and packs, and no capes."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -59,7 +59,7 @@ def of_sheet(character: Character) -> Array:
 
 
 WHOLE = np.ones(16)
-PLATE, CLOAK = sheet(1.35, 1.15), sheet(1.35, 0.5)
+PLATE, PACK, CLOAK = sheet(1.35, 1.15), sheet(1.35, 0.92), sheet(1.35, 0.5)
 RISING = np.linspace(0, 1, 8)[np.arange(16) % 8]
 
 
@@ -76,6 +76,11 @@ def test_a_plate_that_moves_as_one_is_rigid(carriers: list[tuple[int, Array]], s
     looseness = estimate_looseness(larger)
     assert np.all(looseness[-16:] == 0)
     assert np.all(looseness[:-16] > 0)
+
+
+def test_a_pack_that_is_strapped_on_is_rigid() -> None:
+    """It reaches farther from the bones than plates do, and less far than a cape."""
+    assert np.all(of_sheet(wearing(PACK, [(CHEST, WHOLE)])) == 0)
 
 
 def test_a_cape_on_one_joint_hangs() -> None:

@@ -1,7 +1,7 @@
-"""Which separate pieces of a character's mesh are rigid: small ones, such as buttons, and plates of armour.
+"""Which separate pieces of a character's mesh are rigid: small ones, such as buttons, plates of armour, and packs.
 
-A plate moves as one with a joint of the body and lies near the bones that begin there; a cape, which often hangs on
-one joint too, reaches farther.
+A plate or a pack moves as one with a joint of the body and lies near the bones that begin there; a cape, which often
+hangs on one joint too, reaches farther.
 """
 
 import numpy as np
@@ -13,7 +13,7 @@ from mua.rig.bones import capsule_distance, figure_scale
 from mua.rig.character import Character
 
 SMALL = 0.12  # metres on a person: a piece of this size or less (eye, tooth, button) is rigid
-REACH = 0.25  # metres on a person: how far a plate reaches from the bones of its joint
+REACH = 0.45  # metres on a person: how far plates and packs reach from the bones of their joint; capes go farther
 ALIKE = 0.2  # root mean square difference between the skin weights of a piece, below which it moves as one
 
 
