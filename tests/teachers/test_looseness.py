@@ -41,20 +41,22 @@ def test_head_and_hands_are_firmer_than_the_trunk() -> None:
 
 
 def test_what_a_hand_holds_is_firm_and_what_hangs_from_the_head_is_not() -> None:
-    character = tube(rings=101)
-    hand, head = (
+    """A hand may go by another name, where the skeleton or its file says what it is."""
+    character = replace(tube(rings=101), roles={"Grip": "left hand"})
+    hand, other, head = (
         replace(
             character.skeleton,
-            names=("LeftArm", holder, "Bone_042", "Spine", "RightArm", "RightLeg"),
-            parents=np.array([-1, 0, 1, 0, 0, 0], np.int32),
-            bind_rotations=np.tile([1.0, 0, 0, 0], (6, 1)),
-            bind_translations=np.zeros((6, 3)),
+            names=("LeftArm", holder, "Bone_042", "Spine", "RightArm", "RightLeg", "Neck"),
+            parents=np.array([-1, 0, 1, 0, 0, 0, 3], np.int32),
+            bind_rotations=np.tile([1.0, 0, 0, 0], (7, 1)),
+            bind_translations=np.zeros((7, 3)),
         )
-        for holder in ("LeftHand", "Head")
+        for holder in ("LeftHand", "Grip", "Head")
     )
     end = character.mesh.vertices[:, 1] > 1.7
-    held, hanging = (estimate_looseness(replace(character, skeleton=one))[end] for one in (hand, head))
+    held, gripped, hanging = (estimate_looseness(replace(character, skeleton=s))[end] for s in (hand, other, head))
     np.testing.assert_allclose(held, FIRM_LOOSENESS, atol=0.01)
+    np.testing.assert_allclose(gripped, FIRM_LOOSENESS, atol=0.01)
     np.testing.assert_allclose(hanging, SOFT_LOOSENESS, atol=0.01)
 
 

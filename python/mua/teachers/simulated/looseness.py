@@ -6,7 +6,7 @@ import numpy as np
 from scipy import sparse
 
 from mua.arrays import Array
-from mua.pose.joint_names import roles
+from mua.pose.joint_names import SIDES, roles
 from mua.rig.character import Character
 from mua.teachers.simulated.pieces import in_rigid_pieces
 from mua.teachers.simulated.room import room_beneath
@@ -53,10 +53,11 @@ def _moved_by(joints: Array, character: Character) -> Array:
 
 def _below_hands(character: Character) -> Array:
     """Whether each joint [J] is below a hand: fingers, and what the hand holds."""
-    skeleton = character.skeleton
+    skeleton, found = character.skeleton, roles(character.skeleton, character.roles)
+    hands = {joint for side in SIDES for joint in found.get(f"{side} hand", ())}
     held = np.zeros(len(skeleton.names), bool)
     for joint, parent in enumerate(skeleton.parents):
-        held[joint] = parent >= 0 and (held[parent] or bool(HOLDS.search(skeleton.names[parent])))
+        held[joint] = parent >= 0 and (held[parent] or parent in hands or bool(HOLDS.search(skeleton.names[parent])))
     return held
 
 
@@ -77,7 +78,7 @@ def _room(character: Character) -> Array:
     held = _moved_by(_below_hands(character), character)[faces].min(axis=1) > HELD
     faces = faces if held.all() else faces[~held]
     found, legs = roles(skeleton, character.roles), np.zeros(len(faces), int)
-    for side, mark in (("left", 1), ("right", 2)):
+    for side, mark in zip(SIDES, (1, 2), strict=True):
         moved = np.zeros(len(skeleton.names))
         for joint, parent in enumerate(skeleton.parents):
             moved[joint] = joint in found.get(f"{side} thigh", ()) or (parent >= 0 and moved[parent])
