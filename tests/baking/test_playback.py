@@ -48,6 +48,14 @@ def test_a_held_out_piece_is_not_what_a_player_begins_with() -> None:
     assert [c.name for c in whole_clips(clips)] == ["walk", "dance", "piece", "turn"]
 
 
+def test_a_rest_pose_is_not_what_a_player_begins_with() -> None:
+    """Many files hold a T-pose as their first clip."""
+    pose = recorded("T-pose", 4)
+    still = replace(pose, translations=np.zeros_like(pose.translations))
+    assert [c.name for c in whole_clips([still, *CUT])] == ["walk", "short", "T-pose", "dance"]
+    assert [c.name for c in whole_clips([pose, *CUT])] == ["T-pose", "walk", "short", "dance"]
+
+
 @pytest.mark.parametrize(
     "clips",
     [

@@ -15,9 +15,9 @@ from small_bakes import SMALL
 from mua.asset import read
 from mua.baking.contact_sheet import CELL
 from mua.baking.pipeline import bake
-from mua.baking.ranges import clips_of, planned_range, range_frames, settings_for
+from mua.baking.ranges import planned_range, range_frames, settings_for
 from mua.baking.settings import BakeSettings, MotionRange
-from mua.baking.sources import load_baked_character, load_character
+from mua.baking.sources import clips_of, load_baked_character, load_character
 from mua.errors import InputError
 from mua.fidelity.strips import CAPTION
 from mua.pose.clip import Clip, is_range

@@ -11,9 +11,8 @@ from PIL import Image
 
 from mua.arrays import Array
 from mua.baking.listener import Listener
-from mua.baking.ranges import clips_of
 from mua.baking.settings import BakeSettings
-from mua.baking.sources import faced, load_baked_character
+from mua.baking.sources import clips_of, faced, load_baked_character
 from mua.characters.expression_file import write_expression_names
 from mua.errors import InputError
 from mua.fidelity import report

@@ -16,11 +16,11 @@ from mua.baking.listener import Listener
 from mua.baking.options import check_output
 from mua.baking.plan import describe_plan, plan, split, usual_poses
 from mua.baking.playback import choose
-from mua.baking.ranges import clips_of, planned_range, settings_for
+from mua.baking.ranges import planned_range, settings_for
 from mua.baking.recorded import recorded, recording_key
 from mua.baking.report import STAND_IN
 from mua.baking.settings import BakeSettings
-from mua.baking.sources import faced, load_baked_character
+from mua.baking.sources import clips_of, faced, load_baked_character
 from mua.errors import InputError
 from mua.fidelity import fitting, report
 from mua.fidelity.compare import Fidelity

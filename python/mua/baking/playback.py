@@ -8,24 +8,29 @@ from mua.baking.plan import ENDING
 from mua.baking.settings import ALL, NONE
 from mua.errors import InputError
 from mua.pose.clip import Clip, is_range
+from mua.pose.moved import show_one_pose
 from mua.recording import RecordedClip
 
 LOOKED_AT = 512  # frames, evenly over all clips, of which the most typical is pictured
 
 
 def whole_clips(recorded: Iterable[RecordedClip]) -> list[Clip]:
-    """The clips of a recording, each with its held-out end joined to it again; those held out come last.
+    """The clips of a recording, each with its held-out end joined to it again; rest poses and those held out come last.
 
     A player begins with the first one, and what a teacher's program holds out is often a piece of a second. The
     built-in range of motion is for training, unless there is nothing else.
     """
     recorded = list(recorded)
     recorded = [clip for clip in recorded if not is_range(clip.name)] or recorded
-    clips = {clip.name: clip for clip in sorted(recorded, key=lambda clip: clip.held_out) if len(clip)}
+    clips = {clip.name: clip for clip in sorted(filter(len, recorded), key=_begins_late)}
     ends = {name: beginning for name, clip in clips.items() if (beginning := _beginning(clip, clips)) is not None}
     joined = {beginning.name: clips[name] for name, beginning in ends.items()}
     plain = [Clip(name, own.rate, own.rotations, own.translations) for name, own in clips.items() if name not in ends]
     return [clip.then(joined[clip.name]) if clip.name in joined else clip for clip in plain]
+
+
+def _begins_late(clip: RecordedClip) -> tuple[bool, bool]:
+    return clip.held_out, show_one_pose([clip])
 
 
 def range_clips(recorded: Iterable[RecordedClip], clips: Sequence[Clip]) -> list[Clip]:

@@ -1,14 +1,14 @@
-"""The built-in range of motion in a bake: what of it is recorded, and which clips are of it."""
+"""The built-in range of motion in a bake: what of it is recorded."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from mua.baking.plan import plan
 from mua.baking.settings import BakeSettings
-from mua.baking.sources import load_clips
 from mua.characters.rigid_skeleton import rest_pose
-from mua.motion.range import motion_range, moved_by, standing
+from mua.motion.range import motion_range
 from mua.pose.clip import RANGE_OF_MOTION, REST, Clip
+from mua.pose.moved import moved_by
 from mua.recording import PlannedClip
 from mua.rig.character import Character
 from mua.student.settings import Settings
@@ -17,17 +17,6 @@ SHARE = 4  # a quarter as many frames of the range as the user asks for of their
 FEW_SHARE, FEW = 2, 75  # or half as many, up to so many
 SHORT_SHARE = 3  # where that motion is shorter, its missing frames are of the range too, up to a third of those asked
 FEWEST = 135  # for, or to so many
-
-
-def clips_of(settings: BakeSettings, character: Character) -> tuple[list[Clip], list[str]]:
-    """The clips that a bake is of, and notes: those of the files, else the character's, else the range of motion."""
-    if settings.motions or character.clips or settings.motion_range == "none":
-        return load_clips(character, settings.motions, mapping=settings.mapping, feet=settings.feet)
-    clips = motion_range(character, (), frames=settings.student.frames, seed=settings.student.seed, short=True)
-    clips = [replace(clip, name=clip.name.removeprefix(RANGE_OF_MOTION)) for clip in clips]  # they are the motion
-    clips = [*standing(character), *clips]  # players begin with the first
-    note = f"{character.name}: holds no animation; its motion is a built-in range of motion made for its rig"
-    return clips, [f"{note}. --motion adds motion of your own."]
 
 
 def settings_for(settings: BakeSettings, character: Character) -> Settings:

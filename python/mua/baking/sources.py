@@ -5,8 +5,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Unpack
 
-import numpy as np
-
 from mua.asset.storable import require_names
 from mua.atlas.detail import Detail, UvMode
 from mua.atlas.surfaces import Surfaces
@@ -19,14 +17,14 @@ from mua.motion.face import with_face
 from mua.motion.load import counted, load_motions, unique_names
 from mua.motion.planted_feet import Feet
 from mua.motion.quality import measure_motion
-from mua.motion.range import moved_by
-from mua.pose.clip import Clip
+from mua.motion.range import motion_range, standing
+from mua.pose.clip import RANGE_OF_MOTION, Clip
 from mua.pose.encoding import RATE
+from mua.pose.moved import show_one_pose
 from mua.pose.resample import resample
 from mua.rig.character import Character
 
 ATLAS = 1024  # texels of the base-colour atlas along a side
-LED = 0.001  # of the figure's height: joints that clips move less are still
 
 
 def load_baked_character(
@@ -55,12 +53,7 @@ def load_baked_character(
 def _without_still_clips(character: Character) -> Character:
     """The character, as one without animation where its clips show one pose: programs write a rest pose as a take."""
     clips = character.clips
-    if not clips or moved_by(clips, range(len(character.skeleton.names))):
-        return character
-    paths = np.concatenate([clip.translations for clip in clips])
-    weights = [clip.expressions for clip in clips if clip.expressions is not None]
-    height = np.ptp(character.mesh.vertices[:, 1])
-    if np.ptp(paths, axis=0).max() > LED * height or any(np.ptp(one, axis=0).any() for one in weights):
+    if not clips or not show_one_pose(clips):
         return character
     note = f"{', '.join(clip.name for clip in clips)}: shows one pose, which counts as no animation."
     return replace(character, clips=(), notes=(*character.notes, note))
@@ -100,6 +93,17 @@ def load_character(
     from mua.teachers.procedural import procedural_character  # not to be loaded for a file's sake
 
     return procedural_character(seed=seed)
+
+
+def clips_of(settings: BakeSettings, character: Character) -> tuple[list[Clip], list[str]]:
+    """The clips that a bake is of, and notes: those of the files, else the character's, else the range of motion."""
+    if settings.motions or character.clips or settings.motion_range == "none":
+        return load_clips(character, settings.motions, mapping=settings.mapping, feet=settings.feet)
+    clips = motion_range(character, (), frames=settings.student.frames, seed=settings.student.seed, short=True)
+    clips = [replace(clip, name=clip.name.removeprefix(RANGE_OF_MOTION)) for clip in clips]  # they are the motion
+    clips = [*standing(character), *clips]  # players begin with the first
+    note = f"{character.name}: holds no animation; its motion is a built-in range of motion made for its rig"
+    return clips, [f"{note}. --motion adds motion of your own."]
 
 
 def load_clips(

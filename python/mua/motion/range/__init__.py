@@ -4,6 +4,6 @@ A person moves as `moves` writes it down in angles of a body of its own, and thr
 are put on the rig as any motion is. A rig that is no person moves each joint for itself. `motion_range` makes it.
 """
 
-from mua.motion.range.make import motion_range, moved_by, standing
+from mua.motion.range.make import motion_range, standing
 
-__all__ = ["motion_range", "moved_by", "standing"]
+__all__ = ["motion_range", "standing"]

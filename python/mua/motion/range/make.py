@@ -1,6 +1,6 @@
 """The clips of the built-in range of motion, on a character's own skeleton."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -19,6 +19,7 @@ from mua.motion.source import SourceMotion
 from mua.motion.trunk import trunk_of
 from mua.pose.clip import RANGE_OF_MOTION, Clip
 from mua.pose.joint_names import SIDES
+from mua.pose.moved import moved_by
 from mua.pose.skeleton import Skeleton
 from mua.rig.character import Character
 from mua.rig.moving import moving_joints
@@ -26,7 +27,6 @@ from mua.rig.moving import moving_joints
 ROUND = 160  # frames recorded of all clips, after which another round of them shows more than more of these
 PLAYED = 10  # frames for each that is recorded, at most
 UPRIGHT = 0.7  # cosine of the lean of a person's trunk in the bind pose
-STILL = np.radians(1)  # a joint whose rotation varies less in all clips is not moved by them
 
 
 def motion_range(
@@ -63,15 +63,6 @@ def standing(character: Character) -> list[Clip]:
     if not _is_person(skeleton, matches):
         return []
     return [_put_on(played("stand", STAND), skeleton, matches, _rest(skeleton, ()), (), np.random.default_rng(0))]
-
-
-def moved_by(clips: Sequence[Clip], joints: Iterable[int]) -> list[int]:
-    """The `joints` that the clips turn."""
-    if not clips:
-        return []
-    turns = np.concatenate([clip.rotations for clip in clips])
-    away = 2 * np.arccos(np.clip(np.abs(np.sum(turns * turns[:1], axis=-1)), 0, 1))
-    return [int(joint) for joint in joints if away[:, joint].max() > STILL]
 
 
 def _shortened(clips: Sequence[Clip], frames: int) -> list[Clip]:
