@@ -7,7 +7,7 @@ import pytest
 from people import chain, still
 
 from mua import rotation
-from mua.pose.clip import Clip
+from mua.pose.clip import Clip, Stretches
 from mua.pose.moved import moved_by, show_one_pose
 
 
@@ -39,7 +39,10 @@ def test_a_path_is_no_pose_that_is_held(led: float, one: bool) -> None:
     assert show_one_pose([clip]) is one
 
 
-def test_an_expression_that_changes_is_motion() -> None:
+def test_scales_and_expressions_that_change_are_motion() -> None:
     clip = turned(0, frames=2)
     assert show_one_pose([replace(clip, expressions=np.full((2, 3), 0.5))])
     assert not show_one_pose([replace(clip, expressions=np.array([[0.0], [0.1]]))])
+    scales = np.array([1.0, 1.2])[:, None, None, None] * np.eye(3)
+    assert not show_one_pose([replace(clip, stretches=Stretches(np.array([1]), scales))])
+    assert show_one_pose([replace(clip, stretches=Stretches(np.array([1]), scales[[1, 1]]))])

@@ -20,9 +20,10 @@ def moved_by(clips: Sequence[Clip], joints: Iterable[int]) -> list[int]:
 
 
 def show_one_pose(clips: Sequence[Clip]) -> bool:
-    """Whether no joint turns or moves in these clips together, and no expression changes: a rest pose, say."""
+    """Whether no joint turns, moves or scales in these clips, and no expression changes: a rest pose, say."""
     paths = np.concatenate([clip.translations for clip in clips])
-    weights = [clip.expressions for clip in clips if clip.expressions is not None]
-    changes = any(np.ptp(one, axis=0).any() for one in weights)
+    beside = [clip.stretches.matrices for clip in clips if clip.stretches is not None]
+    beside += [clip.expressions for clip in clips if clip.expressions is not None]
+    changes = any(np.ptp(values, axis=0).any() for values in beside)
     led = np.ptp(paths, axis=0).max() > LED * np.abs(paths).max()
     return not (led or changes or moved_by(clips, range(paths.shape[1])))
