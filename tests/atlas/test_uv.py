@@ -167,6 +167,16 @@ def test_unwrap_gives_every_triangle_texels_of_its_own() -> None:
     np.testing.assert_allclose(colours[inside, 0], 255 * place[inside, 0], atol=ROUNDED)
 
 
+def test_a_large_surface_is_cut_in_blocks_that_do_not_overlap(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("mua.atlas.uv.BLOCK", 100)
+    surfaces = surfaces_of(patch(12, at=0, uv=uv_map(1, 1, at=(0, 0))), images=(ramp(16),))  # 288 triangles
+    character = build_atlas(surfaces, uv="unwrap", size=128)
+    texels, _ = texels_and_colours(character)
+    assert set(texels.triangles.tolist()) == set(range(288))
+    assert texels.claimed_twice == 0
+    assert character.notes[-1] == "All 288 triangles are cut into 4 new UV charts."
+
+
 @pytest.mark.parametrize("width", [1e-4, 1e-3, 100])  # lashes of a head alone, and a figure in centimetres
 def test_unwrap_cuts_surfaces_of_any_size(width: float) -> None:
     surfaces = surfaces_of(patch(4, at=0, uv=uv_map(1, 1, at=(0, 0)), width=width), images=(ramp(16),))

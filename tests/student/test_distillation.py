@@ -18,14 +18,14 @@ def shown(monkeypatch: pytest.MonkeyPatch, path: Path, *, seen: int, unseen: int
     def whole_frames(*, held_out: bool) -> Iterator[str]:
         return iter([f"{'unseen' if held_out else 'seen'} {i}" for i in range(unseen if held_out else seen)])
 
-    def sheet(_: object, frames: Iterator[str], *, fidelity: object) -> Image.Image:
+    def sheet(_: object, frames: Iterator[str], *, compared: object) -> Image.Image:
         found.extend(frames)
         return Image.new("RGB", (2, 2))
 
     monkeypatch.setattr(distillation, "contact_sheet", sheet)
     recording: Any = SimpleNamespace(whole_count=seen + unseen, whole_frames=whole_frames)
     avatar: Any = None
-    distillation._picture(path, avatar, recording, None)
+    distillation._picture(path, avatar, recording, ())
     return found
 
 

@@ -22,6 +22,7 @@ from mua.rig.texel_map import build_texel_map, cover
 JUDGED_SIZE = 512  # texels along the map in which overlap is counted
 LOSS_ALLOWED = 0.02  # share of texels claimed twice, or of surface with next to no texels
 BORDER = 1e-3  # a UV this far beyond the texture counts as inside
+BLOCK = 20_000  # triangles cut together: xatlas takes time by the square of a chart's, and may fall to tiny charts then
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,15 +163,31 @@ def _cut(
     anew: Array,  # [F] bool
 ) -> Array:
     """New UVs [n, 3, 2] in the unit square, cut and flattened by xatlas, for the faces that need them."""
-    kept, index = np.unique(source.surfaces.faces[anew], return_inverse=True)
-    size = np.sqrt(areas(source.positions[anew]).mean())  # xatlas drops what is smaller than 1e-7 square units: lashes
-    vertices = np.ldexp(source.surfaces.vertices[kept], -np.frexp(size)[1])
+    vertices, faces, positions = source.surfaces.vertices, source.surfaces.faces[anew], source.positions[anew]
+    size = np.sqrt(areas(positions).mean())  # xatlas drops what is smaller than 1e-7 square units: lashes
+    blocks = _blocks(positions.mean(axis=1), np.arange(len(faces)))
     atlas = xatlas.Atlas()
-    atlas.add_mesh(vertices.astype(np.float32), index.reshape(-1, 3).astype(np.uint32))
+    for block in blocks:
+        kept, index = np.unique(faces[block], return_inverse=True)
+        scaled = np.ldexp(vertices[kept], -np.frexp(size)[1]).astype(np.float32)
+        atlas.add_mesh(scaled, index.reshape(-1, 3).astype(np.uint32))
     atlas.generate()
-    _, corners, uv = atlas.get_mesh(0)
-    flat = uv[corners].astype(np.float64) * (atlas.width, atlas.height)
+    flat = np.empty((len(faces), 3, 2))
+    for number, block in enumerate(blocks):
+        _, corners, uv = atlas.get_mesh(number)
+        flat[block] = uv[corners].astype(np.float64) * (atlas.width, atlas.height)
     return flat / max(flat.max(), np.finfo(float).tiny)
+
+
+def _blocks(
+    centres: Array,  # [F, 3] of all triangles
+    some: Array,  # [n] triangles
+) -> list[Array]:
+    """Some triangles halved across their longest side until no block has more than BLOCK."""
+    if len(some) <= BLOCK:
+        return [some]
+    ordered = some[np.argsort(centres[some, np.argmax(np.ptp(centres[some], axis=0))], kind="stable")]
+    return [block for half in np.array_split(ordered, 2) for block in _blocks(centres, half)]
 
 
 def _side_by_side(

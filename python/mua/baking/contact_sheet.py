@@ -1,6 +1,6 @@
 """The contact sheet: teacher, student and their difference side by side, on frames that the student never saw."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from functools import partial
 
 import numpy as np
@@ -12,8 +12,6 @@ from mua.avatar.decode import decode_clip_frame, pose_splats
 from mua.avatar.rendering import render_premultiplied, to_bytes
 from mua.baking.portrait import portrait
 from mua.fidelity.background import background_for, over
-from mua.fidelity.compare import Fidelity
-from mua.fidelity.sheet import worst_strips
 from mua.fidelity.strips import GAIN, caption, difference, sheet
 from mua.recording import WholeFrame
 from mua.training.threads import in_order
@@ -23,9 +21,9 @@ CELL = (288, 416)  # width, height, pixels
 COLUMNS = 2  # frames beside each other
 
 
-def contact_sheet(avatar: Avatar, frames: Iterable[WholeFrame], *, fidelity: Fidelity | None = None) -> Image.Image:
-    """One image with three cells for each frame, below those of the source beside the splats where there are any."""
-    strips = [] if fidelity is None else worst_strips(fidelity, CELL)
+def contact_sheet(avatar: Avatar, frames: Iterable[WholeFrame], *, compared: Sequence[Array] = ()) -> Image.Image:
+    """One image with three cells for each frame, below the strips that compare the source with the splats."""
+    strips = list(compared)
     strips += [np.full_like(strips[0], 255)] * (len(strips) % COLUMNS) if strips else []
     strips += in_order(partial(_strip, avatar), frames, threads=few_threads())
     return sheet(strips, COLUMNS)

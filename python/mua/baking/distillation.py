@@ -1,13 +1,14 @@
 """From a recording to a verified `.muaavatar`: all of mua-train, and the second half of a bake."""
 
 import itertools
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
 import torch
 
+from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.asset.count import stored_bytes
 from mua.asset.read import decode_tree, load
@@ -22,7 +23,6 @@ from mua.baking.one_sided import with_one_sided
 from mua.baking.settings import ALL
 from mua.baking.shared_options import DeviceName
 from mua.errors import InputError
-from mua.fidelity.compare import Fidelity
 from mua.files.write import remove_leftovers, replacing, require_writable, write_bytes
 from mua.pose.clip import Clip
 from mua.recording import Recording
@@ -49,7 +49,7 @@ class Distillation:
     clips: tuple[Clip, ...] | None = None  # the character's, whole; None: the recording's, their ends joined
     playback: tuple[str, ...] = (ALL,)  # which of them the file holds, as `choose` reads it
     storage: Storage = "f16"
-    fidelity: Fidelity | None = None  # the character's, for the contact sheet
+    compared: Sequence[Array] = ()  # strips for the contact sheet: the character's source beside its splats
     processes: Processes = ALONE  # that train together; the first of them writes
 
     @property
@@ -142,7 +142,7 @@ def finish(distillation: Distillation, student: Student, recording: Recording, l
         return Baked({}, distillation.output, stored, distillation.teacher)
     errors = evaluate(recording, student, avatar=avatar, progress=listener.step)
     sheet, figures = distillation.beside("_contact_sheet.png"), distillation.beside("_errors.md")
-    _picture(sheet, avatar, recording, distillation.fidelity)
+    _picture(sheet, avatar, recording, distillation.compared)
     write_bytes(figures, report.markdown(errors, teacher=distillation.teacher).encode())
     content = report.as_json(errors, teacher=distillation.teacher, held_out=starts)
     write_bytes(distillation.beside("_errors.json"), content.encode())
@@ -166,11 +166,11 @@ def _within_memory(distillation: Distillation) -> Iterator[None]:
         ) from error
 
 
-def _picture(path: Path, avatar: Avatar, recording: Recording, fidelity: Fidelity | None) -> None:
+def _picture(path: Path, avatar: Avatar, recording: Recording, compared: Sequence[Array]) -> None:
     """Write the contact sheet, of held-out frames where there are any."""
     unseen = sum(1 for _ in recording.whole_frames(held_out=True))
     step = max((unseen or recording.whole_count) // SHEET_FRAMES, 1)
     frames = recording.whole_frames(held_out=unseen > 0)  # one at a time: hundreds would not fit into memory
     chosen = itertools.islice(frames, step // 2, step // 2 + step * SHEET_FRAMES, step)
     with replacing(path) as temporary:
-        contact_sheet(avatar, chosen, fidelity=fidelity).save(temporary)
+        contact_sheet(avatar, chosen, compared=compared).save(temporary)

@@ -5,9 +5,8 @@ channels. Four images of each frame stand beside the teacher's: the mean texture
 the dynamic subbands could do (D1 and D0 at their mean); the best coefficients for the trained bases; the student's own.
 """
 
-import itertools
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -22,11 +21,9 @@ from mua.student.bases import BestCoefficients
 from mua.student.model import Student
 from mua.training.threads import in_order
 from mua.training.torch_threads import few_threads, thread_share
-from mua.wavelets import Bands
 
 TRAINING = "training"
 MESH = "mesh"  # the canonical vertices, beside the attributes of the texture
-BATCH = 2  # frames whose images are held at once, by each thread
 PICTURES = ("mean", "bands", "best", "student")
 
 # what an RMS error of 1 in raw channels means to a person
@@ -109,17 +106,12 @@ def evaluate(
     """Errors by group: all training frames together, then each held-out clip by its name."""
     comparer = _Comparer(recording, student, avatar)
     groups: dict[str, Errors] = {}
-    frames = recording.whole_frames()
-    batches = iter(lambda: list(itertools.islice(frames, BATCH)), [])
-    threads = few_threads()
-    done = 0
+    frames, threads = recording.whole_frames(), few_threads()
     with thread_share(threads):
-        for batch, errors_of_batch in in_order(lambda batch: (batch, comparer.errors(batch)), batches, threads=threads):
-            for frame, own in zip(batch, errors_of_batch, strict=True):
-                group = frame.clip.name if frame.clip.held_out else TRAINING
-                groups[group] = groups.get(group, Errors()) + own
-                done += 1
-                progress(done, recording.whole_count)
+        counted = in_order(comparer.errors, frames, threads=threads)
+        for done, (group, own) in enumerate(counted, start=1):
+            groups[group] = groups.get(group, Errors()) + own
+            progress(done, recording.whole_count)
     return dict(sorted(groups.items(), key=lambda item: item[0] != TRAINING))
 
 
@@ -138,33 +130,27 @@ class _Comparer:
         parts = zip(student.branches, (GEOMETRY, APPEARANCE), strict=True)
         self.best = [(BestCoefficients(branch), channels) for branch, channels in parts]
 
-    def errors(self, frames: Sequence[WholeFrame]) -> list[Errors]:
-        """Errors of each frame alone."""
-        counted = []
-        for frame, pictures in zip(frames, self.pictures(frames), strict=True):
-            counted.append(Errors())
-            counted[-1].add(frame, pictures)
-        return counted
+    def errors(self, frame: WholeFrame) -> tuple[str, Errors]:
+        """The group of a frame, and its errors alone."""
+        counted = Errors()
+        counted.add(frame, self.pictures(frame))
+        return frame.clip.name if frame.clip.held_out else TRAINING, counted
 
-    def pictures(self, frames: Sequence[WholeFrame]) -> Iterator[dict[str, Picture]]:
-        """The images of each frame by name."""
-        bands, best = self._closest(frames)
-        for i, frame in enumerate(frames):
-            own = unposed_clip_frame(self.avatar, frame.clip, frame=frame.index)
-            yield {
-                "mean": self.mean,
-                "bands": Picture(bands[i]),
-                "best": Picture(best[i]),
-                "student": Picture(own.texture, own.mesh, own.outside),
-            }
+    def pictures(self, frame: WholeFrame) -> dict[str, Picture]:
+        """The images of a frame by name."""
+        bands, best = self._closest(frame)
+        own = unposed_clip_frame(self.avatar, frame.clip, frame=frame.index)
+        return {
+            "mean": self.mean,
+            "bands": Picture(bands),
+            "best": Picture(best),
+            "student": Picture(own.texture, own.mesh, own.outside),
+        }
 
     @torch.no_grad()
-    def _closest(self, frames: Sequence[WholeFrame]) -> tuple[Array, Array]:
-        """Textures [F, N, 23] whose D1 and D0 are at their mean, and those of the best coefficients."""
-        recorded = [
-            self.recording.subbands(slice(0, CHANNELS), [frame.row], held_out=frame.clip.held_out) for frame in frames
-        ]
-        bands = Bands(*(torch.cat(level) for level in zip(*recorded, strict=True)))
+    def _closest(self, frame: WholeFrame) -> tuple[Array, Array]:
+        """The texture [N, 23] whose D1 and D0 are at their mean, and that of the best coefficients."""
+        bands = self.recording.subbands(slice(0, CHANNELS), [frame.row], held_out=frame.clip.held_out)
         alphas = [best(bands.of(channels)) for best, channels in self.best]
         best = self.student.synthesize((alphas[0], alphas[1]))
-        return self.student.texture(bands).numpy(), self.student.texture(best).numpy()
+        return self.student.texture(bands)[0].numpy(), self.student.texture(best)[0].numpy()

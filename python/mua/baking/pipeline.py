@@ -10,6 +10,7 @@ import torch
 from mua.arrays import Array
 from mua.atlas.texel_density import describe_texels
 from mua.baking.check import fidelity_of
+from mua.baking.contact_sheet import CELL
 from mua.baking.distillation import Baked, Distillation, choose_device, distil_student, finish
 from mua.baking.filmed import bake_trained_teacher
 from mua.baking.listener import Listener
@@ -24,6 +25,7 @@ from mua.baking.sources import clips_of, faced, load_baked_character
 from mua.errors import InputError
 from mua.fidelity import fitting, report
 from mua.fidelity.compare import Fidelity
+from mua.fidelity.sheet import worst_strips
 from mua.files.lock import DirectoryLock
 from mua.files.write import replacing, require_writable
 from mua.pose.clip import Clip
@@ -81,7 +83,8 @@ def _bake(settings: BakeSettings, device: torch.device, listener: Listener, wait
     still = cache(partial(StillTeacher, character, texels=settings.student.texels))
     corrections = _fitted(settings, character, still, planned, listener)
     laid, fidelity = _compared(settings, character, clips, still, corrections, listener)
-    del still
+    compared = [] if fidelity is None else worst_strips(fidelity, CELL)
+    del still, fidelity
     character = replace(character, source=None)  # its textures may be large
     release_memory()
     recording = _record(settings, character, laid, planned, listener, fitted=corrections is not None, waiting=waiting)
@@ -97,7 +100,7 @@ def _bake(settings: BakeSettings, device: torch.device, listener: Listener, wait
         clips=tuple(clips),
         playback=settings.clips,
         storage=settings.storage,
-        fidelity=fidelity,
+        compared=compared,
     )
     student = distil_student(distillation, recording, listener)
     return finish(distillation, student, recording, listener)

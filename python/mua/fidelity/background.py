@@ -17,9 +17,9 @@ def background_for(
     """The grey in 0..1 on which a figure stands out in all of its images."""
     covered = pale = 0
     for image in images:
-        solid = image[..., 3] > 0.5
-        covered += int(solid.sum())
-        pale += int((image[solid, :3] > NEAR_WHITE * image[solid, 3:]).all(axis=-1).sum())
+        figure = image[image[..., 3] > 0.5]
+        covered += len(figure)
+        pale += int(np.count_nonzero(figure[:, :3].min(axis=1) > NEAR_WHITE * figure[:, 3]))
     return GREY if pale > MOSTLY * max(covered, 1) else WHITE
 
 

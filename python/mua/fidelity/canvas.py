@@ -122,7 +122,7 @@ def draw(
     if not len(rows):
         return
     context = program.ctx
-    buffer = context.buffer(np.ascontiguousarray(rows, dtype=np.float32).tobytes())
+    buffer = context.buffer(np.ascontiguousarray(rows, dtype=np.float32))
     array = context.vertex_array(program, [(buffer, layout, *names)])
     array.render(mode, vertices=vertices, instances=instances)
     array.release()

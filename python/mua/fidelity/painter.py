@@ -96,7 +96,7 @@ class Painter:
         set_uniform(self._program, "matrix", tuple((camera.projection @ camera.view).T.ravel()))  # column by column
         self._context.enable_only(moderngl.DEPTH_TEST)
         for piece, at in zip(self._pieces, places, strict=True):
-            self._draw(piece, at[piece.corners], np.arange(len(piece.corners)), solid=True)
+            self._draw(piece, at[piece.corners], solid=True)
         self._draw_clear(places, camera)
         return self._canvas.read(area)
 
@@ -113,13 +113,15 @@ class Painter:
         for _, piece, corners, order in sorted(waiting, key=lambda entry: entry[0]):
             self._draw(piece, corners, (order[:, None] * 3 + np.arange(3)).ravel(), solid=False)
 
-    def _draw(self, piece: _Piece, corners: Array, order: Array, *, solid: bool) -> None:
+    def _draw(self, piece: _Piece, corners: Array, order: Array | None = None, *, solid: bool) -> None:
         material = self._materials[piece.material]
         self._textures[piece.material].use()
         set_uniform(self._program, "mirrored", (material.wrap_u == "mirror", material.wrap_v == "mirror"))
         set_uniform(self._program, "solid", solid)
         set_uniform(self._program, "cutoff", material.alpha_cutoff if piece.material in self._cut_late else 0.0)
-        rows = np.concatenate([corners, piece.inputs], axis=1)[order]
+        rows = np.concatenate([corners, piece.inputs], axis=1, dtype=np.float32)
+        if order is not None:
+            rows = rows[order]
         draw(self._program, rows, "3f 2f 4f", ("place", "coordinates", "factor"), mode=moderngl.TRIANGLES)
 
 

@@ -30,6 +30,8 @@ def sheet(
     columns: int,  # strips in a row
 ) -> Image.Image:
     """All strips, row after row; what is left of the last row is white."""
-    blank = np.full_like(strips[0], 255)
-    filled = [*strips, *[blank] * (-len(strips) % columns)]
-    return Image.fromarray(np.vstack([np.hstack(filled[i : i + columns]) for i in range(0, len(filled), columns)]))
+    height, width = strips[0].shape[:2]
+    picture = Image.new("RGB", (columns * width, -(-len(strips) // columns) * height), "white")
+    for i, strip in enumerate(strips):
+        picture.paste(Image.fromarray(strip), (i % columns * width, i // columns * height))
+    return picture

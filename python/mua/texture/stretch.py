@@ -26,10 +26,12 @@ class SurfelStretch:
         rotations: Array,  # [N, 4] of the surfels at rest
     ) -> None:
         axes = rotation.to_matrix(rotations)
-        a, b, c = vertices[faces[triangles]].swapaxes(0, 1)
-        edges = np.stack([b - a, c - a], axis=2)  # [N, 3, 2]
-        coordinates = np.linalg.pinv(edges, rcond=1e-6) @ axes[:, :, :2]  # of the axes' shadows on the triangle
-        length = np.linalg.norm(edges @ coordinates, axis=1, keepdims=True)
+        used, of_texel = np.unique(triangles, return_inverse=True)
+        a, b, c = vertices[faces[used]].swapaxes(0, 1)
+        edges = np.stack([b - a, c - a], axis=2)  # [n, 3, 2]
+        inverses = np.linalg.pinv(edges, rcond=1e-6)
+        coordinates = inverses[of_texel] @ axes[:, :, :2]  # of the axes' shadows on the triangle
+        length = np.linalg.norm(edges[of_texel] @ coordinates, axis=1, keepdims=True)
         coordinates /= np.where(length > 0, length, np.inf)
         self._faces, self._triangles = faces, triangles
         self._axes = [_squares(*(axes[:, i, k] for i in range(3))) for k in (0, 1)]
