@@ -10,7 +10,7 @@ from limbs import limb_steps, limbs_apart, two_limbs
 
 from mua.student.components import Components
 from mua.student.conditioned import Conditioned
-from mua.student.points import BLEND, RADII, draw_close, draw_points, exchange, scatter
+from mua.student.points import BLEND, FARTHEST, RADII, draw_close, draw_points, exchange, scatter
 from mua.student.regress import MESH, POSED, SWUNG, regress
 from mua.student.settings import Generalisation
 from mua.training.checkpoint import Checkpoints
@@ -76,6 +76,15 @@ def test_a_share_of_the_points_exchanges_parts(share: float, expected: int) -> N
     assert bool(together[1000 - expected :].all()) == (expected == 0)
     alone = draw_points(frames, PLAIN, 1000, steps=None, generalisation=own, generator=seeded(3))
     assert ((alone[:, 0] - alone[:, 3]).abs() < 1e-4).all()
+
+
+def test_a_share_of_the_points_lies_far_out() -> None:
+    """Where unseen motion goes; there the function fades to the mean."""
+    frames = torch.nn.functional.normalize(torch.randn(40, 6, generator=seeded()), dim=1)
+    own = Generalisation(noise=0.0, exchanged=0.0, exchanged_noise=0.0, outside=0.25)
+    away = draw_points(frames, PLAIN, 1000, steps=None, generalisation=own, generator=seeded(3)).norm(dim=1)
+    assert 0.15 < (away > 1.01).float().mean() < 0.25
+    assert FARTHEST / 2 < away.max() < 1.01 * FARTHEST
 
 
 def test_an_mlp_follows_the_users_frames_and_the_others_roughly(tmp_path: Path) -> None:
