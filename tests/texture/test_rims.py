@@ -44,7 +44,7 @@ def test_half_is_covered_at_an_outline_that_cuts_through_texels(beyond: float) -
 def test_a_border_between_charts_is_one_where_they_touch_in_the_texture() -> None:
     """Neighbours in the texture, of charts that lie apart."""
     left, right = square(10), square(10)
-    mesh = joined(left, replace(right, vertices=right.vertices + [1.0, 0, 0], uv=right.uv + [10 / SIZE, 0]))
+    mesh = joined(left, replace(right, vertices=np.add(right.vertices, [1, 0, 0]), uv=np.add(right.uv, [10 / SIZE, 0])))
     texels = build_texel_map(mesh, SIZE)
     found = rest_surfels(
         mesh, size=SIZE, texels=texels.texels, triangles=texels.triangles, barycentrics=texels.barycentrics
