@@ -32,6 +32,9 @@ if TYPE_CHECKING:
     from mua_research.system import TrainingFrames
 
 
+RARELY = (20_000, 20, 20)  # objects between collections of garbage, and how many of each kind between larger ones
+
+
 @pytest.hookimpl(wrapper=True)
 def pytest_collection() -> Generator[None, object, object]:
     """Spare the garbage collector what lives as long as the run: modules and tests, a million objects."""
@@ -41,6 +44,7 @@ def pytest_collection() -> Generator[None, object, object]:
     finally:
         gc.enable()
         gc.freeze()
+        gc.set_threshold(*RARELY)
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: pytest.Config) -> None:

@@ -45,8 +45,8 @@ def path_faults(package: Package) -> Iterator[str]:
 
 def meta_faults(package: Package) -> Iterator[str]:
     """Every asset has its .meta file with the GUID of its place, and every .meta file has its asset."""
-    entries = set(package.entries)
-    for path in package.assets():
+    entries, assets = set(package.entries), package.assets()
+    for path in assets:
         meta = path.with_name(path.name + ".meta")
         if meta not in entries:
             yield f"{package.where(path)}: no .meta file, so that Unity ignores it in an installed package"
@@ -60,7 +60,7 @@ def meta_faults(package: Package) -> Iterator[str]:
             yield f"{package.where(meta)}: a .meta file of what Unity does not import"
         elif path not in entries:
             yield f"{package.where(meta)}: a .meta file without its asset"
-        elif path not in set(package.assets()):
+        elif path not in assets:
             yield f"{package.where(meta)}: a .meta file of an empty folder, which git does not keep"
 
 

@@ -1,36 +1,44 @@
 """mua-inspect prints what a file holds and refuses a broken one in a sentence."""
 
 import json
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
-from commands import Ended, process
+from commands import Commands, Ended, process
 from synthetic_avatar import synthetic_avatar, with_expressions
 
 from mua.asset import write
 from mua.asset.read import load, read
 from mua.asset.summary import summary
 
-
-def inspect(*arguments: object, columns: str = "160") -> Ended:
-    return process("inspect", *arguments, COLUMNS=columns)
+Inspect = Callable[..., Ended]  # the command with its arguments, on a terminal of so many columns
 
 
-def test_shows_skeleton_texels_ranks_costs_and_clips(avatar_file: Path) -> None:
+@pytest.fixture
+def inspect(command: Commands, monkeypatch: pytest.MonkeyPatch) -> Inspect:
+    def run(*arguments: object, columns: int = 160) -> Ended:
+        monkeypatch.setenv("COLUMNS", str(columns))
+        return command("inspect", *arguments)
+
+    return run
+
+
+def test_shows_skeleton_texels_ranks_costs_and_clips(avatar_file: Path, inspect: Inspect) -> None:
     shown = inspect(avatar_file)
     assert shown.status == 0
     for text in ("3 joints, root root", "of 32 x 32", "4 3 2", "M parameters", "GFLOPs", "wave", "bior4.4"):
         assert text in shown.out
 
 
-def test_verify_accepts_a_sound_file(avatar_file: Path) -> None:
+def test_verify_accepts_a_sound_file(avatar_file: Path, inspect: Inspect) -> None:
     verified = inspect("--verify", avatar_file)
     assert (verified.status, "sound" in verified.out) == (0, True)
 
 
-def test_verify_refuses_a_damaged_file_in_one_sentence(avatar_file: Path) -> None:
+def test_verify_refuses_a_damaged_file_in_one_sentence(avatar_file: Path, inspect: Inspect) -> None:
     content = bytearray(avatar_file.read_bytes())
     content[-9] ^= 1
     avatar_file.write_bytes(content)
@@ -54,7 +62,9 @@ def test_is_printed_whole_into_a_pipe(tmp_path: Path, monkeypatch: pytest.Monkey
     assert "…" not in shown
 
 
-def test_json_holds_all_that_the_tables_show_and_the_names_that_the_guide_lists(avatar_file: Path) -> None:
+def test_json_holds_all_that_the_tables_show_and_the_names_that_the_guide_lists(
+    avatar_file: Path, inspect: Inspect
+) -> None:
     held = json.loads(inspect("--json", avatar_file).out)
     guide = (Path(__file__).parents[2] / "docs" / "inspect.md").read_text()
     table = "".join(line for line in guide.splitlines() if line.startswith("| `"))
@@ -71,7 +81,7 @@ def test_json_holds_all_that_the_tables_show_and_the_names_that_the_guide_lists(
         assert f"{number:,}" in shown
 
 
-def test_expressions_are_named(tmp_path: Path) -> None:
+def test_expressions_are_named(tmp_path: Path, inspect: Inspect) -> None:
     path = tmp_path / "face.muaavatar"
     write(path, with_expressions(synthetic_avatar()))
     held = json.loads(inspect("--json", path).out)
@@ -87,7 +97,7 @@ def test_expressions_are_named(tmp_path: Path) -> None:
     assert "jawOpen, nothing" in inspect(path).out
 
 
-def test_a_packed_file_shows_what_it_holds_packed_and_unpacked(tmp_path: Path) -> None:
+def test_a_packed_file_shows_what_it_holds_packed_and_unpacked(tmp_path: Path, inspect: Inspect) -> None:
     path = tmp_path / "packed.muaavatar"
     write(path, synthetic_avatar(), storage="packed")
     held = json.loads(inspect("--json", path).out)
@@ -99,19 +109,19 @@ def test_a_packed_file_shows_what_it_holds_packed_and_unpacked(tmp_path: Path) -
     assert f"{held['unpacked_bytes_by_part']['geometry']:,}" in shown
 
 
-def test_a_plain_file_shows_its_bytes_once(avatar_file: Path) -> None:
+def test_a_plain_file_shows_its_bytes_once(avatar_file: Path, inspect: Inspect) -> None:
     held = json.loads(inspect("--json", avatar_file).out)
     assert held["bytes_by_part"] == held["unpacked_bytes_by_part"]
     assert "unpacked" not in inspect(avatar_file).out
 
 
-def test_json_and_verify_are_one_or_the_other(avatar_file: Path) -> None:
+def test_json_and_verify_are_one_or_the_other(avatar_file: Path, inspect: Inspect) -> None:
     refused = inspect("--json", "--verify", avatar_file)
     assert refused.sentence.startswith("error: --json and --verify are both given")
     assert refused.out == ""
 
 
-def test_a_file_without_clips_says_so(tmp_path: Path) -> None:
+def test_a_file_without_clips_says_so(tmp_path: Path, inspect: Inspect) -> None:
     path = tmp_path / "still.muaavatar"
     write(path, replace(synthetic_avatar(), clips=()))
     assert "It holds no clips." in inspect(path).out

@@ -8,11 +8,13 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from column_files import column_file
 from commands import Commands
 from gltf_files import animate, body
 from PIL import Image
@@ -29,11 +31,13 @@ from mua.baking.recorded import recording_key
 from mua.baking.settings import BakeSettings
 from mua.baking.sources import load_character
 from mua.channels import ATTRIBUTES
+from mua.errors import InputError
 from mua.files.lock import DirectoryLock
 from mua.pose.clip import is_range
 from mua.pose.encoding import RATE
 from mua.pose.resample import resample
 from mua.recording import Recording
+from mua.recording.workers import Worker
 from mua.rig.bounds import playback_bounds
 from mua.rig.expressions import Expressions
 
@@ -66,6 +70,14 @@ def test_the_file_holds_triangles_over_its_texels(baked: Baked) -> None:
     assert len(np.unique(avatar.surface.triangles(texels))) > 0.9 * len(texels.texels)
 
 
+class Enough(Exception):
+    """Ends a bake early."""
+
+
+def stop(*_: object) -> None:
+    raise Enough
+
+
 def recording_of(directory: Path) -> Recording:
     (found,) = (path for path in (directory / "work").glob("recording-*") if path.is_dir())
     return Recording(found)
@@ -93,12 +105,6 @@ def test_the_range_of_motion_is_trained_on_and_nothing_else(baked: Baked) -> Non
 def test_without_the_range_the_same_is_recorded_of_the_users_motion(
     baked: Baked, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    class Enough(Exception):
-        pass
-
-    def stop(*_: object) -> None:
-        raise Enough
-
     monkeypatch.setattr("mua.baking.pipeline.distil_student", stop)
     settings = BakeSettings(tmp_path / "a.muaavatar", tmp_path / "work", SMALL, "cpu", motion_range="none")
     with pytest.raises(Enough):
@@ -206,7 +212,7 @@ def test_a_recording_of_another_surface_is_not_taken_for_this_one(tmp_path: Path
 
 
 @pytest.fixture
-def refused(command: Commands, tmp_path: Path) -> Callable[..., str]:
+def refused(forked: None, command: Commands, tmp_path: Path) -> Callable[..., str]:
     """The sentence that mua-bake ends with; an earlier result must survive and nothing new be left."""
 
     def run(*arguments: object) -> str:
@@ -221,8 +227,11 @@ def refused(command: Commands, tmp_path: Path) -> Callable[..., str]:
     return run
 
 
+HALF = b"glTF\x02\0\0\0\xff\0\0\0"
+
+
 def test_truncated_character_is_named(tmp_path: Path, refused: Callable[..., str]) -> None:
-    (tmp_path / "half.glb").write_bytes(b"glTF\x02\0\0\0\xff\0\0\0")
+    (tmp_path / "half.glb").write_bytes(HALF)
     assert "half.glb" in refused(tmp_path / "half.glb")
 
 
@@ -303,15 +312,27 @@ def test_a_command_is_refused_where_another_is_at_work(tmp_path: Path, refused: 
         assert f"--work {tmp_path / 'out.work'}: process {os.getpid()} is using it" in refused()
 
 
-@pytest.mark.usefixtures("forked")
-def test_processes_wait_for_a_recording_only_where_there_is_none(
+def test_processes_wait_for_a_recording_only_where_there_is_none_and_a_character(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A bake that goes on may need none."""
+    """A bake that goes on may need none, and one whose file cannot be read ends before it needs them."""
     waited: list[int] = []
-    monkeypatch.setattr(pipeline, "_bake", lambda *given: waited.append(len(given[-1])))
-    settings = BakeSettings(tmp_path / "a.muaavatar", tmp_path / "work", SMALL, "cpu", jobs=2)
-    bake(settings, Silent())
+
+    def waiting(count: int, _: object) -> AbstractContextManager[list[Worker]]:
+        waited.append(count)
+        return nullcontext([])
+
+    def bake_up_to_its_clips(character: Path | None) -> int:
+        settings = BakeSettings(tmp_path / "a.muaavatar", tmp_path / "work", SMALL, "cpu", jobs=2, character=character)
+        with pytest.raises((Enough, InputError)):
+            bake(settings, Silent())
+        return sum(waited)
+
+    monkeypatch.setattr(pipeline, "waiting_workers", waiting)
+    monkeypatch.setattr(pipeline, "clips_of", stop)
+    (tmp_path / "half.glb").write_bytes(HALF)
+    assert bake_up_to_its_clips(tmp_path / "half.glb") == 0
+    assert bake_up_to_its_clips(column_file(tmp_path)) == 2
+    assert bake_up_to_its_clips(None) == 4
     (tmp_path / "work" / "recording-of-another-run").mkdir(parents=True)
-    bake(settings, Silent())
-    assert waited == [2, 0]
+    assert bake_up_to_its_clips(column_file(tmp_path)) == bake_up_to_its_clips(None) == 4

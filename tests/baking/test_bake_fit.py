@@ -24,7 +24,7 @@ class Recorded(Exception):
 
 
 @pytest.fixture
-def teachers(monkeypatch: pytest.MonkeyPatch) -> list[SimulatedTeacher]:
+def teachers(forked: None, monkeypatch: pytest.MonkeyPatch) -> list[SimulatedTeacher]:
     made: list[SimulatedTeacher] = []
 
     def recorded(make_teacher: Callable[[], SimulatedTeacher], *_: object) -> None:

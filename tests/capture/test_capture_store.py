@@ -251,14 +251,18 @@ def test_masks_that_fit_count_in_full_and_those_of_other_things_not(tmp_path: Pa
     assert min(weight(frame, camera) for frame in range(4) for camera in ("front", "right", "above")) > 0.9
 
 
-def test_half_a_mask_counts_less(tmp_path: Path) -> None:
-    capture = make_capture(tmp_path)
-    image = capture.files("walk", 0, "front").image
+def behead(image: Path) -> None:
+    """Take the upper third of a mask away."""
     with Image.open(image) as opened:
         picture = np.array(opened)
     rows = np.flatnonzero(picture[..., 3].any(axis=1))
     picture[: rows[len(rows) * 35 // 100], :, 3] = 0
     Image.fromarray(picture).save(image)
+
+
+def test_half_a_mask_counts_less(tmp_path: Path) -> None:
+    capture = make_capture(tmp_path)
+    behead(capture.files("walk", 0, "front").image)
     trust = MaskTrust(capture)
     assert 0 < trust.weight("walk", 0, capture.view("walk", 0, "front")) < 0.95
 
@@ -276,12 +280,7 @@ def test_how_masks_usually_fit_is_what_most_of_the_training_views_do(tmp_path: P
         views += [("reach", *one) for one in product(range(FRAMES["reach"]), capture.cameras)]
         views += [("walk", frame, capture.camera("above")) for frame in range(FRAMES["walk"])]
     for clip, frame, camera in views:
-        image = capture.files(clip, frame, camera.name).image
-        with Image.open(image) as opened:
-            picture = np.array(opened)
-        rows = np.flatnonzero(picture[..., 3].any(axis=1))
-        picture[: rows[len(rows) * 35 // 100], :, 3] = 0
-        Image.fromarray(picture).save(image)
+        behead(capture.files(clip, frame, camera.name).image)
     trust = MaskTrust(capture)
     weights = [trust.weight("walk", 0, capture.view("walk", 0, camera.name)) for camera in trained_on]
     assert (min(weights) > 0.99) == full

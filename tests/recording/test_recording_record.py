@@ -106,12 +106,11 @@ def test_memory_does_not_grow_with_the_number_of_frames(tmp_path: Path) -> None:
     def peak(frames: int) -> int:
         planned = [PlannedClip(clip(rig, "walk", frames), held_out=False, wanted=frozenset(range(frames)))]
         with TeacherWriter(tmp_path / str(frames), rig, rate=RATE, shard_frames=4, whole_every=1) as writer:
-            gc.freeze()  # so that the garbage of other tests is not traversed
+            gc.freeze()  # for good, so that what other tests left is not traversed, nor by later collections
             tracemalloc.start()
             record(teacher, planned, writer, progress=collect)
             allocated = tracemalloc.get_traced_memory()[1]
             tracemalloc.stop()
-            gc.unfreeze()
         return allocated
 
     peak(4)  # fills caches

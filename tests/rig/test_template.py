@@ -147,6 +147,7 @@ def test_build_rig_maps_texels_of_the_template() -> None:
     assert np.array_equal(rig.mesh.vertices, character.mesh.vertices[source])
 
 
+@pytest.mark.usefixtures("first_try")
 def test_real_character_loses_little(shared_data: Any) -> None:
     character = read_character(shared_data.path("characters/White_F_3_Casual.glb"), atlas_size=256)
     rig, source = build_rig(character, texels=384)

@@ -49,12 +49,18 @@ class Heard:
 
 
 def recording(
-    directory: Path, *, training: int = 2, held: int = 0, still: int | None = None, names: Sequence[str] = ()
+    directory: Path,
+    *,
+    training: int = 2,
+    held: int = 0,
+    still: int | None = None,
+    names: Sequence[str] = (),
+    opacity: float = 0.0,
 ) -> Recording:
     """`training` clips and a held-out one whose values are far off; every second frame is recorded.
 
     `held` is the seed of the held-out clip, which alone moves the joint `still`, in its place too. The first clips
-    may have `names`.
+    may have `names`, all textures another `opacity`.
     """
     rig, rng = synthetic_rig(), np.random.default_rng(0)
     with TeacherWriter(directory, rig, rate=24.0) as writer:
@@ -72,6 +78,7 @@ def recording(
                 texture = rng.normal(0, 0.1, (len(rig.texels.texels), CHANNELS))
                 texture[:, 3] += 1
                 texture[:, ATTRIBUTES["scale"]] -= 4
+                texture[:, ATTRIBUTES["opacity"]] += opacity
                 if held_out:
                     texture[:, ATTRIBUTES["opacity"]] += 50
                     texture[:, ATTRIBUTES["SH"]] += 4
@@ -134,6 +141,14 @@ def test_a_recording_that_grew_is_distilled_anew(tmp_path: Path) -> None:
     heard = Heard()
     distilled(recording(tmp_path / "long", training=3), tmp_path / "student", heard)
     assert set(heard.stages) == ALL
+
+
+def test_a_recording_of_the_same_motion_with_other_textures_is_distilled_anew(tmp_path: Path) -> None:
+    distilled(recording(tmp_path / "one"), tmp_path / "student", Heard())
+    heard = Heard()
+    found = distilled(recording(tmp_path / "other", opacity=1.0), tmp_path / "student", heard)
+    assert set(heard.stages) == ALL
+    assert float(found.mean_lowpass()[10].mean()) == pytest.approx(1.0, abs=0.1)
 
 
 @pytest.mark.parametrize(("module", "name", "value"), [(components, "FORGONE", 0.5), (student_of, "REST_WEIGHT", 0.6)])

@@ -2,13 +2,15 @@
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 import torch
 from limbs import limb_steps, limbs_apart, two_limbs
 
 from mua.student.components import Components
-from mua.student.points import BLEND, RADII, draw_close, draw_points, exchange, scatter
+from mua.student.conditioned import Conditioned
+from mua.student.points import BLEND, FARTHEST, RADII, draw_close, draw_points, exchange, scatter
 from mua.student.regress import MESH, POSED, SWUNG, regress
 from mua.student.settings import Generalisation
 from mua.training.checkpoint import Checkpoints
@@ -20,6 +22,14 @@ PLAIN = Components(torch.eye(6), 1e6 * torch.tensor([[-1.0], [1.0]]).expand(2, 6
 
 def seeded(seed: int = 0) -> torch.Generator:
     return torch.Generator().manual_seed(seed)
+
+
+def fitted(directory: Path, inputs: torch.Tensor, targets: torch.Tensor, **options: Any) -> Conditioned:
+    """An MLP fitted with these options of `regress`."""
+    run = Run(seeded(), Checkpoints(directory, "k"), lambda _: None, torch.device("cpu"))
+    schedule = Schedule(steps=600, batch=64, lr=3e-3)
+    mlp = regress(inputs, targets, components=PLAIN, hidden=64, schedule=schedule, stage="x", run=run, **options)
+    return mlp.requires_grad_(False)
 
 
 def test_an_exchanged_part_is_whole_and_the_rest_is_that_of_one_frame() -> None:
@@ -68,26 +78,24 @@ def test_a_share_of_the_points_exchanges_parts(share: float, expected: int) -> N
     assert ((alone[:, 0] - alone[:, 3]).abs() < 1e-4).all()
 
 
+def test_a_share_of_the_points_lies_far_out() -> None:
+    """Where unseen motion goes; there the function fades to the mean."""
+    frames = torch.nn.functional.normalize(torch.randn(40, 6, generator=seeded()), dim=1)
+    own = Generalisation(noise=0.0, exchanged=0.0, exchanged_noise=0.0, outside=0.25)
+    away = draw_points(frames, PLAIN, 1000, steps=None, generalisation=own, generator=seeded(3)).norm(dim=1)
+    assert 0.15 < (away > 1.01).float().mean() < 0.25
+    assert FARTHEST / 2 < away.max() < 1.01 * FARTHEST
+
+
 def test_an_mlp_follows_the_users_frames_and_the_others_roughly(tmp_path: Path) -> None:
     inputs, shown = two_limbs(200, seed=3, together=True)
     half = inputs[:, 0] > inputs[:, 0].median()
+    goal = torch.where(half[:, None], shown, -shown)  # a jump, which no smooth function follows
     errors = {}
     for name, own, known in (("all", None, True), ("half", half, True), ("none", None, False)):
-        run = Run(seeded(), Checkpoints(tmp_path / name, "k"), lambda _: None, torch.device("cpu"))
-        mlp = regress(
-            inputs,
-            torch.where(half[:, None], shown, -shown),  # a jump, which no smooth function follows
-            components=PLAIN,
-            hidden=64,
-            schedule=Schedule(steps=600, batch=64, lr=3e-3),
-            stage="x",
-            run=run,
-            own=own,
-            fit=SWUNG,
-            generalisation=Generalisation(own=known),
-        )
-        with torch.no_grad():
-            errors[name] = (mlp(inputs) - torch.where(half[:, None], shown, -shown)).square().sum(1)
+        generalisation = Generalisation(own=known)
+        mlp = fitted(tmp_path / name, inputs, goal, own=own, fit=SWUNG, generalisation=generalisation)
+        errors[name] = (mlp(inputs) - goal).square().sum(1)
     size = shown.square().sum(1)
     assert errors["half"][half].mean() < 0.5 * size[half].mean()
     assert errors["half"][~half].mean() > 0.7 * size[~half].mean()
@@ -100,13 +108,8 @@ def test_what_the_pose_alone_shows_is_followed_beyond_the_users_frames(tmp_path:
     own = inputs.norm(dim=1) < inputs.norm(dim=1).median()
     left = {}
     for name, fit in (("posed", POSED), ("swung", SWUNG)):
-        run = Run(seeded(), Checkpoints(tmp_path / name, "k"), lambda _: None, torch.device("cpu"))
-        schedule = Schedule(steps=600, batch=64, lr=3e-3)
-        mlp = regress(
-            inputs, shown, components=PLAIN, hidden=64, schedule=schedule, stage="x", run=run, own=own, fit=fit
-        )
-        with torch.no_grad():
-            left[name] = (mlp(unseen) - truth).square().sum() / truth.square().sum()
+        mlp = fitted(tmp_path / name, inputs, shown, own=own, fit=fit)
+        left[name] = (mlp(unseen) - truth).square().sum() / truth.square().sum()
     assert left["posed"] < 0.4
     assert left["posed"] < 0.7 * left["swung"]
 
@@ -122,43 +125,19 @@ def test_close_points_are_those_of_a_frame_but_for_little_noise() -> None:
 def test_a_final_fit_follows_the_users_frames_more_closely(tmp_path: Path) -> None:
     inputs, shown = two_limbs(200, seed=3, together=True)
     own = inputs.norm(dim=1) < inputs.norm(dim=1).median()
-    errors = {}
+    goal, errors = torch.where(own[:, None], shown, 3 * shown), {}
     for name, fit in (("start", POSED), ("final", MESH)):
-        run = Run(seeded(), Checkpoints(tmp_path / name, "k"), lambda _: None, torch.device("cpu"))
-        mlp = regress(
-            inputs,
-            torch.where(own[:, None], shown, 3 * shown),
-            components=PLAIN,
-            hidden=64,
-            schedule=Schedule(steps=600, batch=64, lr=3e-3),
-            stage="x",
-            run=run,
-            own=own,
-            fit=fit,
-        )
-        with torch.no_grad():
-            errors[name] = (mlp(inputs) - shown)[own].norm(dim=1).median()
+        mlp = fitted(tmp_path / name, inputs, goal, own=own, fit=fit)
+        errors[name] = (mlp(inputs) - shown)[own].norm(dim=1).median()
     assert errors["final"] < 0.8 * errors["start"]
 
 
 def test_an_mlp_fitted_to_exchanged_parts_carries_over_to_limbs_that_move_apart(tmp_path: Path) -> None:
     inputs, shown = two_limbs(300, seed=3, together=True)
     unseen, truth = two_limbs(200, seed=4, together=False)
-    schedule = Schedule(steps=600, batch=64, lr=3e-3)
     errors = []
     for share in (0.0, 0.75):
-        run = Run(seeded(), Checkpoints(tmp_path / f"{share}", "k"), lambda _: None, torch.device("cpu"))
-        mlp = regress(
-            inputs,
-            shown,
-            components=PLAIN,
-            hidden=64,
-            schedule=schedule,
-            stage="x",
-            run=run,
-            locality=limbs_apart(0.0),
-            generalisation=replace(Generalisation(), exchanged=share),
-        )
-        with torch.no_grad():
-            errors.append(float((mlp(unseen) - truth).square().mean()))
+        generalisation = replace(Generalisation(), exchanged=share)
+        mlp = fitted(tmp_path / f"{share}", inputs, shown, locality=limbs_apart(0.0), generalisation=generalisation)
+        errors.append(float((mlp(unseen) - truth).square().mean()))
     assert errors[1] < 0.8 * errors[0]

@@ -28,6 +28,7 @@ from trainings import one_by_one
 from mua.channels import APPEARANCE, GEOMETRY
 from mua.pose.components import INPUT_FLOOR, principal_components
 from mua.pose.encoding import Components
+from mua.rig.bones import figure_scale
 from mua.student import coarse, targets
 from mua.student import source as sources
 from mua.student.bases import BestCoefficients
@@ -213,6 +214,23 @@ def test_a_channel_that_only_rounds_stays_at_its_mean(tmp_path: Path) -> None:
     assert not student.geometry.d2.h[:, opacity].any()
 
 
+@pytest.mark.parametrize(("size", "still"), [(1.0, False), (100.0, True)])
+def test_what_is_seen_of_an_offset_depends_on_the_size_of_the_figure(tmp_path: Path, size: float, still: bool) -> None:
+    """Hundredths of a millimetre on a person, and on a figure that is a hundred times as large."""
+    _, bands = bands_of_frames()
+    for band in (bands.ll[:, 0], bands.d3[:, :, 0], bands.d2[:, :, 0]):
+        band.mul_(1e-2)
+    given = samples()
+    scale = size / figure_scale(given.meshes(torch.arange(1))[0].numpy())
+    data = replace(
+        given,
+        subbands=lambda part, rows: Bands(*(b[rows] for b in bands.of(part))),
+        meshes=lambda rows: scale * given.meshes(rows),
+    )
+    student = train_in(tmp_path, quick(), data=data)
+    assert student.geometry.d2.h[:, 0].any() != still
+
+
 def test_whitened_directions_vary_alike_down_to_the_floor() -> None:
     inputs = torch.randn(500, 3, generator=torch.Generator().manual_seed(0)) * torch.tensor([3.0, 1.0, 1e-4])
     spread = (inputs @ whitening(inputs)).std(0).sort().values
@@ -278,6 +296,11 @@ def test_large_sources_are_read_batch_by_batch(monkeypatch: pytest.MonkeyPatch) 
     streamed = hold(source, APPEARANCE, frames=FRAMES, size=48)(slice(1, 3), rows)
     assert all(torch.equal(a, b) for a, b in zip(held, streamed, strict=True))
     assert asked == [(APPEARANCE, FRAMES), (slice(12, 14), 2)]
+    asked.clear()
+    monkeypatch.setattr(sources, "HELD_BYTES", sum(band.nbytes for band in bands.of(APPEARANCE)))
+    for together in (1, 2):  # beside another source there is room for half
+        hold(source, APPEARANCE, frames=FRAMES, size=48, together=together)
+    assert asked == [(APPEARANCE, FRAMES)]
 
 
 def test_fewer_frames_than_blendshapes_train(tmp_path: Path) -> None:

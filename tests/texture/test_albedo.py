@@ -40,5 +40,13 @@ def test_what_is_transparent_lends_no_colour_when_averaged() -> None:
     np.testing.assert_allclose(colors, np.tile([1, 1, 1, 0.5], (20, 1)), atol=1 / 255)
 
 
+def test_what_is_transparent_lends_no_colour_between_texels() -> None:
+    atlas = np.zeros((4, 4, 4), np.uint8)
+    atlas[:, :2] = 255
+    colors = sample_albedo(atlas, np.array([[0.45, 0.5]]), 4)
+    np.testing.assert_allclose(colors[0, :3], 1, atol=1 / 255)
+    assert 0.5 < colors[0, 3] < 1
+
+
 def test_no_points() -> None:
     assert sample_albedo(np.zeros((4, 4, 4), np.uint8), np.zeros((0, 2)), 4).shape == (0, 4)

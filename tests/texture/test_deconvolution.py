@@ -104,3 +104,11 @@ def test_texels_take_the_colours_of_their_own_width() -> None:
     lower, upper = list(levels.values())[:2]
     assert between not in levels
     np.testing.assert_allclose(found[:, SIZE // 3], (0.75 * lower + 0.25 * upper)[:, SIZE // 3], atol=1e-6)
+
+
+def test_colours_of_a_hard_edge_are_colours() -> None:
+    """The least-squares solution alone would overshoot on both sides."""
+    edge = np.full((4 * SIZE, 4 * SIZE, 4), 255, np.uint8)
+    edge[:, : 2 * SIZE, :3] = 0
+    found = fitted_to(edge)
+    assert (found.min(), found.max()) == (0, 1)

@@ -10,7 +10,7 @@ from mua.avatar.decode import pose_splats
 from mua.avatar.rendering import render_premultiplied
 from mua.rig.character import Character, Mesh
 from mua.teachers.simulated.still import StillTeacher
-from mua.texture.depths import SINK, depths
+from mua.texture.depths import BESIDE, SINK, depths
 
 SIDE = 0.3  # metres
 TEXELS = 48  # of the texture along a side; each side of the plate has half of them
@@ -69,6 +69,15 @@ def test_sides_stay_apart_by_twice_the_full_depth_or_as_far_as_they_are(thicknes
     found = depths(places, normals=normals, deviations=np.full(338, DEVIATION))
     full = SINK * DEVIATION
     np.testing.assert_allclose(thickness - 2 * found, max(min(thickness, 2 * full), thickness - 2 * full), atol=1e-12)
+
+
+def test_what_faces_away_beside_a_texel_is_not_behind_it() -> None:
+    """The other side of a fold that lies so far to the side; as far behind, it is the back of a plate."""
+    places = np.array([[0.0, 0, 0], [(BESIDE + 0.1) * DEVIATION, 0, -0.1 * DEVIATION]])
+    normals, deviations = np.array([[0.0, 0, 1], [0, 0, -1]]), np.full(2, DEVIATION)
+    np.testing.assert_allclose(depths(places, normals=normals, deviations=deviations), SINK * DEVIATION)
+    places[1, 0] = (BESIDE - 0.1) * DEVIATION
+    assert depths(places, normals=normals, deviations=deviations).max() < 0.2 * SINK * DEVIATION
 
 
 def test_layers_that_face_one_way_are_sunk_as_one_is() -> None:

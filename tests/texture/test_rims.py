@@ -1,9 +1,11 @@
 """Surfels along the borders of charts: an outline is where half is covered, wherever it cuts through the texels."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
+from patches import joined
 from surfel_coverage import coverage
 
 from mua.rig.character import Mesh
@@ -37,6 +39,19 @@ def test_half_is_covered_at_an_outline_that_cuts_through_texels(beyond: float) -
     covered = coverage(places, centres, found.rotations, np.exp(found.log_scales)).reshape(out.shape).mean(axis=0)
     outline = np.interp(-0.5, -covered, out[0])
     assert outline == pytest.approx(12 + beyond, abs=BY_TEXEL)
+
+
+def test_a_border_between_charts_is_one_where_they_touch_in_the_texture() -> None:
+    """Neighbours in the texture, of charts that lie apart."""
+    left, right = square(10), square(10)
+    mesh = joined(left, replace(right, vertices=np.add(right.vertices, [1, 0, 0]), uv=np.add(right.uv, [10 / SIZE, 0])))
+    texels = build_texel_map(mesh, SIZE)
+    found = rest_surfels(
+        mesh, size=SIZE, texels=texels.texels, triangles=texels.triangles, barycentrics=texels.barycentrics
+    )
+    row, column = np.divmod(texels.texels, SIZE)
+    at_border = np.isin(row, (2, 11)) | np.isin(column, (2, 11, 12, 21))
+    np.testing.assert_array_equal(found.at_border, at_border)
 
 
 def test_surfels_inside_stay_where_their_texels_are() -> None:

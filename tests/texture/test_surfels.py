@@ -10,13 +10,15 @@ from tube import HEIGHT, RADIUS, tube
 from mua import rotation
 from mua.rig.texel_map import build_texel_map
 from mua.texture import surfels
-from mua.texture.sharpness import SPREAD
+from mua.texture.sharpness import NARROW, SPREAD, Sharpness
 
 SIZE = 61
 ROUNDING = 1e3 * float(np.finfo(np.float64).eps)  # one-rings' 2 x 2 inverses lose two digits
 
 
-def tube_surfels(sides: int = 13, factor: float = 1.0) -> tuple[surfels.Surfels, np.ndarray]:
+def tube_surfels(
+    sides: int = 13, factor: float = 1.0, wanted: float | None = None
+) -> tuple[surfels.Surfels, np.ndarray]:
     mesh = tube(sides=sides).mesh
     mesh = replace(mesh, vertices=factor * mesh.vertices)
     texels = build_texel_map(mesh, SIZE)
@@ -26,8 +28,14 @@ def tube_surfels(sides: int = 13, factor: float = 1.0) -> tuple[surfels.Surfels,
         texels=texels.texels,
         triangles=texels.triangles,
         barycentrics=texels.barycentrics,
+        wanted=None if wanted is None else round_ones(wanted, len(texels.texels)),
     )
     return found, texels.texels
+
+
+def round_ones(spread: float, count: int) -> Sharpness:
+    """Surfels of one width that lie along no line."""
+    return Sharpness(np.full(count, spread), np.tile([1.0, 0], (count, 1)), np.zeros(count))
 
 
 def test_frames_are_unit_and_look_along_normal_and_u() -> None:
@@ -65,6 +73,13 @@ def test_footprint_is_the_distance_of_texels() -> None:
     np.testing.assert_allclose(scales[inner, 0], SPREAD * wide * chord, rtol=tilt)
     np.testing.assert_allclose(scales[inner, 1], SPREAD * high, rtol=tilt)
     assert np.all(scales[:, 2] <= scales[:, :2].min(axis=1))
+
+
+def test_surfels_are_as_wide_as_the_image_asks() -> None:
+    (found, texels), (narrow, _) = tube_surfels(), tube_surfels(wanted=NARROW)
+    inner = surrounded(texels)
+    ratios = np.exp(narrow.log_scales - found.log_scales)[inner, :2]
+    assert np.median(ratios) == pytest.approx(NARROW / SPREAD, rel=ROUNDING)  # few have to cover more
 
 
 def surrounded(texels: np.ndarray) -> np.ndarray:

@@ -17,6 +17,8 @@ from mua.fidelity.measure import MOST_DECIBELS
 from mua.fidelity.posing import Poser
 from mua.teachers.simulated.still import StillTeacher
 
+pytestmark = pytest.mark.usefixtures("first_try")
+
 SCALE = 1000.0  # pixels along a metre: a fringe is looked for within ten
 
 

@@ -7,12 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from csharp import RUNTIME, CSharp
-from damaged import DAMAGED
 from format_program import values
-from malformed import EXPRESSIVE, MALFORMED
 from synthetic_avatar import sparse_avatar, synthetic_avatar, with_expressions, with_surface
 from tree_edits import edited
-from unpackable import UNPACKABLE
+from wrong_files import write_all, wrong_files
 
 from mua.asset.flatbuffer import FormatError, Tree, parse
 from mua.asset.packing import tensors
@@ -50,13 +48,6 @@ def csharp_answers(csharp: CSharp, program: Path, files: list[Path]) -> list[tup
     """`ok`, or code and field for each file."""
     lines = csharp.run(program, "answers", *files).splitlines()
     return [tuple(line.split("\t")[:2]) for line in lines]
-
-
-def write_all(folder: Path, contents: list[bytes]) -> list[Path]:
-    files = [folder / f"{i}.muaavatar" for i in range(len(contents))]
-    for file, content in zip(files, contents, strict=True):
-        file.write_bytes(content)
-    return files
 
 
 def test_format_knows_no_engine(csharp: CSharp) -> None:
@@ -137,12 +128,7 @@ def test_checksum_is_that_of_zlib_at_any_length(csharp: CSharp, program: Path, c
 def test_malformed_files_get_the_same_code_and_field(
     csharp: CSharp, program: Path, tmp_path: Path, content: bytes
 ) -> None:
-    files = [edited(content, edit) for _, _, edit in MALFORMED] + [damage(content) for _, _, damage in DAMAGED]
-    network = encode(with_surface(synthetic_avatar()), storage="packed")
-    files += [edited(network, edit) for _, _, edit in UNPACKABLE]
-    face = encode(with_expressions(synthetic_avatar()), storage="f16")
-    files += [edited(face, edit) for _, _, edit in EXPRESSIVE]
-    expected = [(code, field) for code, field, _ in [*MALFORMED, *DAMAGED, *UNPACKABLE, *EXPRESSIVE]]
+    files, expected = wrong_files(content)
     assert csharp_answers(csharp, program, write_all(tmp_path, files)) == expected
 
 

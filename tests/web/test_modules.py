@@ -9,8 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from damaged import DAMAGED
-from malformed import EXPRESSIVE, MALFORMED, crowded
+from malformed import crowded
 from recent_node import NEEDS_NODE
 from rule_cases import cases
 from synthetic_avatar import (
@@ -23,7 +22,7 @@ from synthetic_avatar import (
 )
 from tree_edits import edited
 from turn_scenarios import decided, run, timed, wander, written
-from unpackable import UNPACKABLE
+from wrong_files import write_all, wrong_files
 
 from mua.arrays import Array
 from mua.asset import write
@@ -79,13 +78,6 @@ def answers(folder: Path, contents: Sequence[bytes]) -> list[list[str]]:
     return node("answers", *write_all(folder, contents))
 
 
-def write_all(folder: Path, contents: Sequence[bytes]) -> list[Path]:
-    files = [folder / f"{i}.muaavatar" for i in range(len(contents))]
-    for file, content in zip(files, contents, strict=True):
-        file.write_bytes(content)
-    return files
-
-
 @pytest.fixture(scope="module")
 def content() -> bytes:
     return encode(with_surface(synthetic_avatar()), storage="i8")
@@ -99,12 +91,7 @@ def test_sound_files_are_read(tmp_path: Path, storage: Any) -> None:
 
 
 def test_malformed_files_get_the_same_sentence(tmp_path: Path, content: bytes) -> None:
-    files = [edited(content, edit) for _, _, edit in MALFORMED] + [damage(content) for _, _, damage in DAMAGED]
-    network = encode(with_surface(synthetic_avatar()), storage="packed")
-    files += [edited(network, edit) for _, _, edit in UNPACKABLE]
-    face = encode(with_expressions(synthetic_avatar()), storage="f16")
-    files += [edited(face, edit) for _, _, edit in EXPRESSIVE]
-    expected = [(code, field) for code, field, _ in [*MALFORMED, *DAMAGED, *UNPACKABLE, *EXPRESSIVE]]
+    files, expected = wrong_files(content)
     found = answers(tmp_path, files)
     assert [tuple(answer[:2]) for answer in found] == expected
     reported = [(answer, file) for answer, file in zip(found, files, strict=True) if answer[0] != "packed"]

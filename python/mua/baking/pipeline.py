@@ -1,6 +1,7 @@
 """The stages of a bake in order; each leaves its result in the work directory and is resumed from there."""
 
 from collections.abc import Callable, Iterator
+from contextlib import ExitStack
 from dataclasses import replace
 from functools import cache, partial
 
@@ -57,14 +58,23 @@ def bake(settings: BakeSettings, listener: Listener) -> Baked:
     with DirectoryLock(settings.work, name=f"--work {settings.work}"):
         if settings.teacher is not None or settings.training is not None:
             return bake_trained_teacher(settings, device, listener)
-        starts_anew = not any(settings.work.glob("recording-*"))
-        with waiting_workers(settings.jobs if starts_anew else 0, SimulatedTeacher) as waiting:
-            return _bake(settings, device, listener, waiting)
+        with ExitStack() as processes:
+            return _bake(settings, device, listener, processes)
 
 
-def _bake(settings: BakeSettings, device: torch.device, listener: Listener, waiting: list[Worker]) -> Baked:
+def _bake(settings: BakeSettings, device: torch.device, listener: Listener, processes: ExitStack) -> Baked:
+    waiting: list[Worker] = []
+
+    def start(_: object = None) -> None:
+        """Let processes load while the character is laid out, unless a run before left a recording."""
+        nonlocal waiting
+        if not any(settings.work.glob("recording-*")):
+            waiting = processes.enter_context(waiting_workers(settings.jobs, SimulatedTeacher))
+
     listener.stage("character")
-    character = load_baked_character(settings)
+    if settings.character is None:  # else once its file is known to be sound
+        start()
+    character = load_baked_character(settings, read=start)
     clips, notes = clips_of(settings, character)
     clips, of_face = faced(character, clips, settings.face)
     for sentence in (*character.notes, describe_texels(character, settings.student.texels), *notes, *of_face):
