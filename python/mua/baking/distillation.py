@@ -36,7 +36,7 @@ from mua.training.processes import ALONE, Processes
 SHEET_FRAMES = 6
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Distillation:
     """What is to become of a recording."""
 
