@@ -145,10 +145,13 @@ def forked(monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest) -> N
 
 @pytest.fixture
 def first_try(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Charts may lie anywhere: the first layout is taken."""
-    from mua.atlas import packing  # here, because few tests need it
+    """Charts may lie anywhere: the first layout is taken, on a grid of half as many cells a side."""
+    from mua.atlas import packing, packing_grid  # here, because few tests need it
 
     monkeypatch.setattr(packing, "TRIES", packing.TRIES[:1])
+    half = packing_grid.GRID // 2
+    for module in (packing, packing_grid):
+        monkeypatch.setattr(module, "GRID", half)
 
 
 @pytest.fixture

@@ -1,25 +1,35 @@
 """Shells complete options and choices of every command, and help shows choices as choices."""
 
+from collections.abc import Callable
+
 import pytest
-from commands import process
+from commands import Commands, process
 
 from mua.evaluation.settings import SYSTEM_NAMES
 from mua.student.settings import PRESETS, RECIPES
 from mua_research.systems import SYSTEMS
 
-
-def completed(name: str, words: str) -> list[str]:
-    """What bash offers for the last of some words."""
-    variable = f"_MUA_{name.upper()}_COMPLETE"
-    place = str(len(words.split()) - (not words.endswith(" ")))
-    return process(name, **{variable: "complete_bash", "COMP_WORDS": words, "COMP_CWORD": place}).out.split()
+Completed = Callable[[str, str], list[str]]  # what bash offers for the last of some words
 
 
-def test_a_shell_completes_options() -> None:
+@pytest.fixture
+def completed(command: Commands, monkeypatch: pytest.MonkeyPatch) -> Completed:
+    def run(name: str, words: str) -> list[str]:
+        place = str(len(words.split()) - (not words.endswith(" ")))
+        asked = {f"_MUA_{name.upper()}_COMPLETE": "complete_bash", "COMP_WORDS": words, "COMP_CWORD": place}
+        with monkeypatch.context() as patch:
+            for variable, value in asked.items():
+                patch.setenv(variable, value)
+            return command(name).out.split()
+
+    return run
+
+
+def test_a_shell_completes_options(completed: Completed) -> None:
     assert completed("view", "mua-view --a") == ["--azimuth"]
 
 
-def test_a_shell_completes_what_a_command_does() -> None:
+def test_a_shell_completes_what_a_command_does(completed: Completed) -> None:
     assert "check" in completed("capture", "mua-capture ")
     assert completed("capture", "mua-capture check --fr") == ["--frames"]
 
@@ -33,9 +43,17 @@ def test_a_shell_completes_what_a_command_does() -> None:
         ("eval", "--system", ("all", *SYSTEM_NAMES)),
     ],
 )
-def test_choices_are_offered_and_shown(name: str, option: str, choices: tuple[str, ...]) -> None:
+def test_choices_are_offered_and_shown(
+    completed: Completed,
+    command: Commands,
+    monkeypatch: pytest.MonkeyPatch,
+    name: str,
+    option: str,
+    choices: tuple[str, ...],
+) -> None:
     assert completed(name, f"mua-{name} {option} ") == list(choices)
-    shown = process(name, "--help", COLUMNS="250").out
+    monkeypatch.setenv("COLUMNS", "250")
+    shown = command(name, "--help").out
     assert "|".join(choices) in shown or ", ".join(choices) in shown
 
 

@@ -42,7 +42,7 @@ def test_a_killed_descent_ends_in_the_same_bytes(
     """Before its first checkpoint, after one and after several."""
     monkeypatch.setattr("mua.training.optimise.CHECKPOINT_STEPS", 20)
     few = {name: replace(getattr(RANDOM, name), steps=46) for name in ("regression", "finetune")}
-    settings = replace(RANDOM, **few)  # type: ignore[arg-type]
+    settings = replace(RANDOM, **few)
     with pytest.raises(Killed):
         train_in(tmp_path / "a", settings, kill_at(stage, step))
     assert same(train_in(tmp_path / "a", settings), train_in(tmp_path / "b", settings))

@@ -40,12 +40,12 @@ def test_what_is_transparent_lends_no_colour_when_averaged() -> None:
     np.testing.assert_allclose(colors, np.tile([1, 1, 1, 0.5], (20, 1)), atol=1 / 255)
 
 
-def test_what_is_transparent_lends_no_colour_between_texels() -> None:
+def test_what_is_clear_has_the_colour_of_the_nearest_that_is_not() -> None:
     atlas = np.zeros((4, 4, 4), np.uint8)
     atlas[:, :2] = 255
-    colors = sample_albedo(atlas, np.array([[0.45, 0.5]]), 4)
-    np.testing.assert_allclose(colors[0, :3], 1, atol=1 / 255)
-    assert 0.5 < colors[0, 3] < 1
+    colors = sample_albedo(atlas, np.array([[0.45, 0.5], [0.7, 0.5], [0.9, 0.1]]), 4)
+    np.testing.assert_allclose(colors[:, :3], 1, atol=SINGLE)
+    np.testing.assert_allclose(colors[:, 3], [0.7, 0, 0], atol=SINGLE)
 
 
 def test_no_points() -> None:
