@@ -58,14 +58,15 @@ def copied_tree(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     shutil.rmtree(copy)
 
 
-def ends(tree: Path, tests: Iterable[str]) -> int:
-    """The status of tests in a copy of the tree."""
+def ran(tree: Path, tests: Iterable[str]) -> subprocess.CompletedProcess[str]:
+    """The end of tests in a copy of the tree, and what they printed."""
     command = [sys.executable, "-m", "pytest", "-c", "pyproject.toml", "-x", "-n0", "-p", "no:randomly", *tests]
     environment = {**os.environ, "PYTHONPATH": str(tree / "python")}
     environment.pop("PYTEST_XDIST_WORKER", None)
     command += ["-p", "no:cacheprovider", "-m", "not long and not gallery"]
-    ran = subprocess.run(command, cwd=tree, env=environment, capture_output=True, check=False, timeout=SECONDS)
-    return ran.returncode
+    return subprocess.run(
+        command, cwd=tree, env=environment, capture_output=True, text=True, check=False, timeout=SECONDS
+    )
 
 
 @pytest.mark.parametrize("fault", FAULTS, ids=name)
@@ -78,7 +79,8 @@ def test_a_fault_can_be_planted(fault: Fault) -> None:
 
 @pytest.mark.long
 def test_all_pass_without_faults(copied_tree: Path) -> None:
-    assert ends(copied_tree, dict.fromkeys(test for fault in FAULTS for test in fault.tests)) == pytest.ExitCode.OK
+    done = ran(copied_tree, dict.fromkeys(test for fault in FAULTS for test in fault.tests))
+    assert done.returncode == pytest.ExitCode.OK, done.stdout
 
 
 @pytest.mark.long
@@ -88,6 +90,7 @@ def test_a_planted_fault_is_noticed(copied_tree: Path, fault: Fault) -> None:
     sound = planted.read_text()
     planted.write_text(fault.applied_to(sound))
     try:
-        assert ends(copied_tree, fault.tests) == pytest.ExitCode.TESTS_FAILED
+        done = ran(copied_tree, fault.tests)
+        assert done.returncode == pytest.ExitCode.TESTS_FAILED, done.stdout
     finally:
         planted.write_text(sound)
