@@ -72,6 +72,9 @@ def test_attributes_say_what_is_shown_and_from_where(opened: Open) -> None:
     assert page.evaluate("[fake.clip, fake.speed]") == ["wave", 0.5]
     assert page.evaluate("Object.keys(fake.show).filter((name) => fake.show[name])") == ["template", "skeleton"]
     assert page.evaluate("[fake.camera.azimuth, fake.camera.elevation]") == pytest.approx([1.5708, -0.5236], abs=1e-4)
+    assert page.evaluate(f"{part('.speed')}.value") == "0.5"
+    page.evaluate(f"{ELEMENT}.setAttribute('elevation', '30')")
+    assert page.evaluate("fake.camera.elevation") == pytest.approx(0.5236, abs=1e-4)
 
 
 def test_attributes_say_how_finely_avatars_are_shown_and_whether_the_camera_follows(opened: Open) -> None:

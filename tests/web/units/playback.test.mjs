@@ -32,6 +32,15 @@ test("a negative speed plays backward, from the first frame to the last", () => 
   assert.equal(playback.frameOf(WALK), 54);
 });
 
+test("another clip begins at its first frame, the same one goes on", () => {
+  const playback = playing(WALK);
+  playback.time = 0.5;
+  playback.clip = "walk";
+  assert.equal(playback.time, 0.5);
+  playback.clip = "wave";
+  assert.equal(playback.time, 0);
+});
+
 test("an avatar that is paused at its last frame stays there, and goes on with the first", () => {
   const playback = playing(WALK);
   playback.time = 59 / RATE;
