@@ -13,6 +13,7 @@ import torch
 from captures import FRAMES, make_capture
 from commands import Commands
 from PIL import Image
+from pretended_card import pretended_card
 from small_teachers import FEW, material, teacher
 from small_teachers import SETTINGS as SMALL
 from torch import Tensor
@@ -194,6 +195,19 @@ def test_a_gpu_that_is_not_there_is_named(
     line = ("teach", capture, "-o", tmp_path / "t", "--steps", 1, "--texels", TEXELS)
     assert "--device cuda" in command(*line, "--device", "cuda").sentence
     assert not (tmp_path / "t" / "teacher.json").exists()
+
+
+def test_a_card_trains_the_same_teacher(
+    capture: Path, lpips: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With all that trains beside it: a drivable template, tracks, refined poses, pictures of the progress."""
+    given: dict[str, Any] = {"steps": STEPS, "texels": TEXELS, "lpips_weights": lpips, "refine": 1.0}
+    with pretended_card(monkeypatch):
+        mua.teach(capture, output=tmp_path / "card", device="cuda", **given)
+    mua.teach(capture, output=tmp_path / "cpu", device="cpu", **given)
+    one, other = (load_teacher(tmp_path / name)[0].state_dict() for name in ("card", "cpu"))
+    for name, values in one.items():
+        torch.testing.assert_close(values, other[name], rtol=0, atol=1e-6)
 
 
 def test_poses_of_held_out_clips_change_nothing_in_a_teacher(

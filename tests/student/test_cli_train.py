@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 import torch
 from commands import Commands
+from pretended_card import pretended_card
 from recordings import RATE, FormulaTeacher, clip, plan
 from rich.console import Console
 from synthetic_avatar import synthetic_rig
@@ -129,6 +130,19 @@ def test_a_gpu_that_is_not_there_is_named(
     monkeypatch.setattr(torch.cuda, "is_available", lambda: False)
     assert "--device cuda" in mua_train(written, "--device", "cuda").sentence
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_card_trains_as_good_a_student(
+    written: Path, trained: Path, tmp_path: Path, mua_train: Training, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with pretended_card(monkeypatch):
+        assert mua_train(written, "--device", "cuda").status in FINISHED
+    one, other = (
+        json.loads(path.with_name("a_errors.json").read_text())["groups"]["training"]["rms"]
+        for path in (tmp_path / "a.muaavatar", trained)
+    )
+    for name, errors in one.items():
+        assert errors["student"] == pytest.approx(other[name]["student"], rel=0.02), name
 
 
 def test_without_a_terminal_stages_and_steps_are_lines(monkeypatch: pytest.MonkeyPatch) -> None:

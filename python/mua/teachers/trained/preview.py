@@ -35,7 +35,7 @@ class Preview:
         rows, scores = [], []
         look = image_loss.looks.detach().mean(dim=0)
         for seen, window in self.seen:
-            truth = seen.over(torch.ones(3)).numpy()
+            truth = seen.over(torch.ones_like(seen.image[0, 0])).cpu().numpy()
             shown = picture_of(image_loss.teacher, window, seen, look=look, moving=moving)
             scores.append(psnr(shown, truth))
             rows.append(np.hstack([truth, shown, 1 - GAIN * np.abs(shown - truth)]))
