@@ -20,8 +20,9 @@ def fit_apart(tasks: Sequence[Callable[[Run], None]], run: Run) -> None:
     """Fit parts that share nothing but their inputs: on a CPU two side by side; else one after the other.
 
     There half the threads for each do more than all for one: the larger part of a step is too small to be divided.
+    One alone has no more, as the last bits of its sums depend on their number.
     """
-    if len(tasks) < 2 or not side_by_side(run):
+    if not side_by_side(run):
         for task in tasks:
             task(run)
         return

@@ -114,7 +114,7 @@ def train(
         fit(branch, inputs, source, channels=channels, settings=settings, name=name, run=run.alone(name))
 
     if only == "coarse":
-        fit_mesh(run)
+        fit_apart([fit_mesh], run)
         return
     branches = zip(BRANCHES, student.branches, (GEOMETRY, APPEARANCE), strict=True)
     geometry, appearance = (partial(fit_named, *branch) for branch in branches)
