@@ -72,8 +72,8 @@ def measurements(folder: Path, sizes: Sizes) -> Iterator[tuple[str, str]]:
     devices = ("cuda", "cpu") if torch.cuda.is_available() else ("cpu",)
     yield from (("frames", play(folder, preset, sizes)) for preset in sizes.presets)
     yield "training", bake(folder, sizes)
-    for measure in (distil, rasterise, teach):
-        yield from (("training", measure(folder, device, sizes)) for device in devices)
+    for device in devices:
+        yield from (("training", measure(folder, device, sizes)) for measure in (distil, rasterise, teach))
 
 
 def bake(folder: Path, sizes: Sizes) -> str:
