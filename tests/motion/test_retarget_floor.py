@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from people import (
     POSITION_BOUND,
+    on_thick_soles,
     person,
     retarget,
     still,
@@ -14,6 +15,8 @@ from people import (
     world,
 )
 
+from mua.motion.match import match_joints
+from mua.motion.quality import measure_motion
 from mua.motion.source import SourceMotion
 
 
@@ -55,6 +58,20 @@ def test_feet_that_stay_where_a_raised_rest_pose_has_them_stand() -> None:
     at_rest = np.tile(world(person(), still(person()))[1], (30, 1, 1))
     np.testing.assert_allclose(world(person(), found)[1], at_rest, atol=1e-9)
     assert not any("floor" in note for note in notes)
+
+
+def test_a_figure_on_thick_soles_stands_as_high_as_its_file_has_it() -> None:
+    """Its soles reach down to the floor from joints that are far above it."""
+    source, target = person(), on_thick_soles(person(size=0.6))
+    clip = walk(source)
+    found, _ = retarget(SourceMotion(source, clip), target)
+    feet = [target.names.index(f"{side}Foot") for side in ("Left", "Right")]
+    at_rest = target.world(target.bind_rotations, target.bind_translations)[1][feet[0], 1]
+    assert at_rest > 0.15 * np.ptp(target.world(target.bind_rotations, target.bind_translations)[1][:, 1])
+    lower = world(target, found)[1][:, feet, 1].min(axis=1)
+    assert np.median(lower) == pytest.approx(at_rest, abs=0.02)
+    height = measure_motion(SourceMotion(source, clip), target, found, match_joints(source, target)).feet_height
+    assert height == pytest.approx(0, abs=0.02)
 
 
 def test_legs_without_feet_end_on_the_floor() -> None:

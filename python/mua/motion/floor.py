@@ -4,7 +4,7 @@ import numpy as np
 
 from mua import rotation
 from mua.arrays import Array
-from mua.motion.contacts import LOW, STANDING, floor_of, planted, standing
+from mua.motion.contacts import LOW, STANDING, UNDER, floor_of, planted, standing
 from mua.motion.detached import detached_joints
 from mua.motion.rest import IDENTITY, Rest, Y
 from mua.pose.joint_names import SIDES
@@ -64,7 +64,7 @@ def foot_heights(rest: Rest, turned: Array, at: Array) -> Array:
     Legs without feet end on the floor at rest, straight below them.
     """
     if soles := _soles(rest):
-        return np.asarray(at[:, soles, 1] - rest.target_at[soles, 1] + floor_of(rest.target_at))
+        return np.asarray(at[:, soles, 1] - rest.target_at[soles, 1] + floor_of(rest.target_at, under=UNDER))
     floor = min(floor_of(rest.target_at), 0.0)
     heights = [np.zeros(len(at))]
     for side in SIDES:

@@ -11,7 +11,7 @@ import numpy as np
 
 from mua import rotation
 from mua.arrays import Array
-from mua.motion.contacts import STANDING, floor_of, planted
+from mua.motion.contacts import STANDING, UNDER, floor_of, planted
 from mua.motion.floor import attached, hips_of, led
 from mua.motion.match import Matches
 from mua.motion.pair import Pair
@@ -70,7 +70,7 @@ def _lift(pair: Pair, ankles: list[Ends], toes: list[Ends]) -> float | None:
 def _stand(pair: Pair, points: list[Ends]) -> Array:
     """How high points of the target's feet are where it stands, [P] metres."""
     rest = pair.target.rest_at
-    return np.asarray(rest[[joint for joint, _ in points], 1] - floor_of(rest))
+    return np.asarray(rest[[joint for joint, _ in points], 1] - floor_of(rest, under=UNDER))
 
 
 def _source_heights(pair: Pair, points: list[Ends]) -> Array:
