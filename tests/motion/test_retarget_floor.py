@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from people import (
     POSITION_BOUND,
+    lying,
     on_thick_soles,
     person,
     retarget,
@@ -19,6 +20,8 @@ from mua.motion.match import match_joints
 from mua.motion.quality import measure_motion
 from mua.motion.source import SourceMotion
 
+LYING = 0.01  # metres: feet of the walk are this level; without a floor in the rest pose its lowest ones make one
+
 
 def test_source_resting_about_its_hips_is_set_on_the_floor() -> None:
     source, target = person(), person(size=1.2, axes=2)
@@ -27,6 +30,13 @@ def test_source_resting_about_its_hips_is_set_on_the_floor() -> None:
     found, _ = retarget(SourceMotion(floating, standing), target)
     expected = target.world(target.bind_rotations, target.bind_translations)[1]
     np.testing.assert_allclose(world(target, found)[1][0], expected, atol=POSITION_BOUND)
+
+
+def test_a_rest_pose_that_lies_says_nothing_of_the_floor() -> None:
+    source, target = SourceMotion(person(), walk(person())), person(size=1.2, axes=2)
+    expected, _ = retarget(source, target)
+    found, _ = retarget(replace(source, skeleton=lying(person())), target)
+    np.testing.assert_allclose(world(target, found)[1], world(target, expected)[1], atol=LYING)
 
 
 def test_keeps_the_height_of_a_clip_that_never_stands_and_says_so() -> None:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from gltf_files import Glb, animate
 from named_figures import written_names
-from people import moving, on_thick_soles, person
+from people import lying, moving, on_thick_soles, person
 from scipy.spatial.transform import Rotation
 from shared_data import SharedData
 from web.test_modules import node, pytestmark  # noqa: F401  needs Node
@@ -172,7 +172,7 @@ def vrma(skeleton: Skeleton, clip: Clip) -> Glb:
 def test_animations_of_gltf_and_vrma_are_retargeted_as_the_package_does(tmp_path: Path, suffix: str) -> None:
     source, target = person(size=1.3), person(arms_down=50, legs_apart=8, size=0.7, axes=3)
     target = on_thick_soles(target) if suffix == "vrma" else target
-    made = vrma(source, moving(source)) if suffix == "vrma" else animated(source, moving(source))
+    made = vrma(source, moving(source)) if suffix == "vrma" else animated(lying(source), moving(source))
     path = made.save(tmp_path / f"moves.{suffix}")
     [loaded] = load_motions(path, target, mapping=None, rate=RATE, feet="keep")
     found = browser_clip(tmp_path, target, path)

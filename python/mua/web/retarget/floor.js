@@ -4,6 +4,7 @@
 import { conjugate, multiply, rotate } from "../rotation.js";
 import { world } from "../skeleton.js";
 import { ancestors, SIDES } from "./joint_names.js";
+import { bodyTurn } from "./rest.js";
 import { length, mean, minus, plus, quantile, quaternion, times, turns, vector } from "./vectors.js";
 
 /** @typedef {import("./vectors.js").Vector} Vector */
@@ -209,9 +210,10 @@ function liftOf(rest, placed, source, { rate, scale, leg }) {
   );
   const froms = soles.map((joint) => rest.chain(joint)[0]);
   const height = standingHeight(placed, rest.targetAt, soles) + floorOf(rest.targetAt, UNDER);
-  const rise = scale * standingHeight(source, rest.sourceAt, froms);
+  const upright = standingUp(rest);
+  const rise = scale * standingHeight(source, upright, froms);
   let expected = 0;
-  if (floorOf(rest.sourceAt) === 0 || Math.abs(rise) < LOWEST * leg) {
+  if (floorOf(upright) === 0 || Math.abs(rise) < LOWEST * leg) {
     if (rise >= -LOWEST * leg) expected = rise; // below: a path that starts at the origin, not on the floor
   } else if (height > LOWEST * leg) {
     const lower = placed.map(({ places }) =>
@@ -221,6 +223,13 @@ function liftOf(rest, placed, source, { rate, scale, leg }) {
     expected = level && steps(placed, soles, rate, leg) ? 0 : height;
   }
   return expected - height;
+}
+
+/** Places of the source at rest, stood upright where it lies: files that turn only the root to another up axis. */
+function standingUp(/** @type {Rest} */ rest) {
+  const [turn, places] = [conjugate(bodyTurn(rest)), new Float64Array(rest.sourceAt.length)];
+  for (let at = 0; at < places.length; at += 3) places.set(rotate(turn, rest.sourceAt, 0, at), at);
+  return places;
 }
 
 /** Whether some joint stands at times and moves at others. @param {Posed[]} placed @param {number[]} joints @param {number} rate @param {number} leg */
