@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from people import person, walk, world
+from people import animal, person, walk, world
 from scipy.spatial.transform import Rotation
 
 from mua.motion.load import load_motions
@@ -91,3 +91,11 @@ def test_feet_of_usual_length_keep_their_direction(steps: Path) -> None:
         world(target, clip)[0][:, feet] * world(target, put_on(steps, target, "keep")[0])[0][:, feet], axis=-1
     )
     np.testing.assert_allclose(np.abs(turned), 1, atol=1e-9)
+
+
+def test_an_animal_stands_on_its_forelegs_too(steps: Path) -> None:
+    """What would put its hind feet on the floor would put its forefeet below it."""
+    target = animal(ahead=2, size=2, knee=0.05, toe=0.3)
+    kept, clip = put_on(steps, target, "keep")[0], put_on(steps, target, "auto")[0]
+    feet = [target.names.index(name) for name in SOLES]
+    np.testing.assert_allclose(world(target, clip)[1][:, feet, 1], world(target, kept)[1][:, feet, 1], atol=LEVEL)

@@ -17,7 +17,7 @@ from mua.motion.match import Matches
 from mua.motion.pair import Pair
 from mua.motion.rest import Rest, Y, rest_of
 from mua.motion.source import SourceMotion
-from mua.motion.trunk import unit
+from mua.motion.trunk import on_all_fours, unit
 from mua.pose.clip import Clip
 from mua.pose.joint_names import SIDES
 from mua.pose.skeleton import Skeleton
@@ -35,9 +35,9 @@ def put_down(source: SourceMotion, target: Skeleton, clip: Clip, matches: Matche
         if (toe := matches.ends(f"{side} toe")) is not None and ankle[0] in target.ancestors(toe[0])
     ]
     rest = rest_of(source.skeleton, target, matches)
-    if not feet or not hips_of(rest):
-        return clip, ()
     pair = Pair.of(source, target, clip, matches)
+    if not feet or not hips_of(rest) or on_all_fours(pair.target.rest()):  # an animal stands on its forelegs too
+        return clip, ()
     ankles, toes = (list(points) for points in zip(*feet, strict=True))
     lift = _lift(pair, ankles, toes)
     if lift is None:
