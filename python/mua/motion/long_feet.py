@@ -22,7 +22,7 @@ from mua.pose.clip import Clip
 from mua.pose.joint_names import SIDES
 from mua.pose.skeleton import Skeleton
 
-HOVERS = 0.05  # legs from the lowest standing point of the feet to the floor, a median, from which it is visible
+HOVERS = 0.1  # legs from the lowest standing point of the feet to the floor, a median; toes that turn up slide more
 Ends = tuple[int, int]  # joint of the target, joint of the source
 
 
