@@ -275,9 +275,11 @@ def test_what_other_files_cannot_say_is_named(tmp_path: Path) -> None:
     (tmp_path / "cameras.txt").unlink()
     (tmp_path / "images.txt").unlink()
     colmap_binary(tmp_path)
-    (tmp_path / "images.bin").write_bytes((tmp_path / "images.bin").read_bytes()[:100])
-    with pytest.raises(InputError, match="cannot be read as COLMAP's"):
-        read_cameras(tmp_path)
+    whole = (tmp_path / "images.bin").read_bytes()
+    for length in range(whole.index(b"cam_01")):
+        (tmp_path / "images.bin").write_bytes(whole[:length])
+        with pytest.raises(InputError, match="cannot be read as COLMAP's: a file is cut short or damaged"):
+            read_cameras(tmp_path)
 
 
 @pytest.fixture(scope="module")
