@@ -275,9 +275,11 @@ def test_what_other_files_cannot_say_is_named(tmp_path: Path) -> None:
     (tmp_path / "cameras.txt").unlink()
     (tmp_path / "images.txt").unlink()
     colmap_binary(tmp_path)
-    (tmp_path / "images.bin").write_bytes((tmp_path / "images.bin").read_bytes()[:100])
-    with pytest.raises(InputError, match="cannot be read as COLMAP's"):
-        read_cameras(tmp_path)
+    whole = (tmp_path / "images.bin").read_bytes()
+    for length in range(whole.index(b"cam_01")):
+        (tmp_path / "images.bin").write_bytes(whole[:length])
+        with pytest.raises(InputError, match="cannot be read as COLMAP's: a file is cut short or damaged"):
+            read_cameras(tmp_path)
 
 
 @pytest.fixture(scope="module")
@@ -382,6 +384,10 @@ def test_what_a_folder_lacks_is_named(given: tuple[object, ...], command: Comman
     assert "has no camera called side, as images in" in command("capture", *calibrated).sentence
     (source / "images" / "side").rename(source / "images" / "cam02")
     assert "no two frames in a row have images and masks of all 2 cameras" in command("capture", *calibrated).sentence
+    (source / "images" / "cam02" / "0.png").unlink()
+    for place in ("cam01/1.png", "cam02/0.jpg", "cam02/1.jpg"):
+        Image.new("RGB", SIZE).save(source / "images" / place)
+    assert command("capture", *calibrated).sentence.endswith("cam02/0.png is the first that is not there")
     calibration.write_text(toml(head="cameras.x{name}", name="'a'"))
     assert "two cameras are called a; expected one for each" in command("capture", *calibrated).sentence
     assert not (tmp_path / "out" / "capture.json").exists()

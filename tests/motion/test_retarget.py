@@ -9,6 +9,7 @@ from people import (
     LIMBS,
     POSITION_BOUND,
     angle,
+    animal,
     assert_turned_as_at_rest,
     bone,
     bone_aligned,
@@ -16,7 +17,6 @@ from people import (
     random_clip,
     retarget,
     still,
-    upright,
     walk,
     with_offset,
     world,
@@ -192,26 +192,6 @@ def test_brings_the_clip_to_the_rate_asked_for() -> None:
     skeleton = person(axes=1)
     found, _ = retarget(SourceMotion(skeleton, random_clip(skeleton)), skeleton, rate=24.0)
     assert (len(found), found.rate) == (7, 24.0)
-
-
-def animal(*, ahead: int, size: float, knee: float) -> Skeleton:
-    """An animal that stands on four legs, its head along +Z (ahead 2) or +X (0); hind knees bend by metres."""
-    rows = [
-        *(("Hips", "", (0, 0.5, -0.3)), ("Spine", "Hips", (0, 0.5, -0.1)), ("Chest", "Spine", (0, 0.52, 0.2))),
-        *(("Neck", "Chest", (0, 0.55, 0.3)), ("Head", "Neck", (0, 0.7, 0.45))),
-        *(("LeftUpperArm", "Chest", (0.1, 0.45, 0.2)), ("LeftForeArm", "LeftUpperArm", (0.1, 0.25, 0.18))),
-        *(("LeftHand", "LeftForeArm", (0.1, 0.05, 0.2)), ("LeftUpLeg", "Hips", (0.1, 0.45, -0.3))),
-        *(("LeftLeg", "LeftUpLeg", (0.1, 0.25, -0.3 + knee)), ("LeftFoot", "LeftLeg", (0.1, 0.05, -0.3))),
-    ]
-    rows += [
-        (name.replace("Left", "Right"), parent.replace("Left", "Right"), (-x, y, z))
-        for name, parent, (x, y, z) in rows
-        if name.startswith("Left")
-    ]
-    names = [name for name, _, _ in rows]
-    at = {name: np.array(place if ahead == 2 else (place[2], place[1], -place[0])) for name, _, place in rows}
-    offsets = [size * (at[name] - (at[parent] if parent else 0)) for name, parent, _ in rows]
-    return upright(names, [names.index(parent) if parent else -1 for _, parent, _ in rows], offsets)
 
 
 def test_an_animal_stands_as_the_animal_of_the_motion_stands() -> None:

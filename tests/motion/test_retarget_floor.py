@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 from people import (
     POSITION_BOUND,
+    lying,
+    on_thick_soles,
     person,
     retarget,
     still,
@@ -14,7 +16,11 @@ from people import (
     world,
 )
 
+from mua.motion.match import match_joints
+from mua.motion.quality import measure_motion
 from mua.motion.source import SourceMotion
+
+LYING = 0.01  # metres: feet of the walk are this level; without a floor in the rest pose its lowest ones make one
 
 
 def test_source_resting_about_its_hips_is_set_on_the_floor() -> None:
@@ -24,6 +30,13 @@ def test_source_resting_about_its_hips_is_set_on_the_floor() -> None:
     found, _ = retarget(SourceMotion(floating, standing), target)
     expected = target.world(target.bind_rotations, target.bind_translations)[1]
     np.testing.assert_allclose(world(target, found)[1][0], expected, atol=POSITION_BOUND)
+
+
+def test_a_rest_pose_that_lies_says_nothing_of_the_floor() -> None:
+    source, target = SourceMotion(person(), walk(person())), person(size=1.2, axes=2)
+    expected, _ = retarget(source, target)
+    found, _ = retarget(replace(source, skeleton=lying(person())), target)
+    np.testing.assert_allclose(world(target, found)[1], world(target, expected)[1], atol=LYING)
 
 
 def test_keeps_the_height_of_a_clip_that_never_stands_and_says_so() -> None:
@@ -55,6 +68,20 @@ def test_feet_that_stay_where_a_raised_rest_pose_has_them_stand() -> None:
     at_rest = np.tile(world(person(), still(person()))[1], (30, 1, 1))
     np.testing.assert_allclose(world(person(), found)[1], at_rest, atol=1e-9)
     assert not any("floor" in note for note in notes)
+
+
+def test_a_figure_on_thick_soles_stands_as_high_as_its_file_has_it() -> None:
+    """Its soles reach down to the floor from joints that are far above it."""
+    source, target = person(), on_thick_soles(person(size=0.6))
+    clip = walk(source)
+    found, _ = retarget(SourceMotion(source, clip), target)
+    feet = [target.names.index(f"{side}Foot") for side in ("Left", "Right")]
+    at_rest = target.world(target.bind_rotations, target.bind_translations)[1][feet[0], 1]
+    assert at_rest > 0.15 * np.ptp(target.world(target.bind_rotations, target.bind_translations)[1][:, 1])
+    lower = world(target, found)[1][:, feet, 1].min(axis=1)
+    assert np.median(lower) == pytest.approx(at_rest, abs=0.02)
+    height = measure_motion(SourceMotion(source, clip), target, found, match_joints(source, target)).feet_height
+    assert height == pytest.approx(0, abs=0.02)
 
 
 def test_legs_without_feet_end_on_the_floor() -> None:

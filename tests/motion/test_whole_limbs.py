@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from people import person, retarget, upright, walk, world
+from people import ANGLE_BOUND, bone, person, retarget, upright, walk, world
 
 from mua.motion.limb_parts import ARM, LEG, parts_of
 from mua.motion.match import match_joints
@@ -70,6 +70,47 @@ def test_motion_goes_onto_limbs_whose_names_give_only_some_parts(parts: dict[str
     expected, _ = retarget(SourceMotion(source, walk(source)), person(size=1.2))
     np.testing.assert_allclose(world(target, found)[1], world(target, expected)[1], atol=1e-9)
     assert any("by the lengths of the bones" in note and "left forearm" in note for note in notes)
+
+
+def test_arms_with_twist_joints_and_no_hands_bend_at_their_elbows() -> None:
+    """As Rigify's deform bones, of a figure whose arms end in stumps."""
+    whole = person()
+    keep = [i for i, name in enumerate(whole.names) if not name.endswith(("Hand", "HandMiddle1"))]
+    names, parents, offsets = list(map(whole.names.__getitem__, keep)), [], []
+    for joint in keep:
+        parent = int(whole.parents[joint])
+        parents.append(keep.index(parent) if parent >= 0 else -1)
+        offsets.append(whole.bind_translations[joint])
+    for side in ("Left", "Right"):
+        for part, end in (("Arm", "ForeArm"), ("ForeArm", "Hand")):
+            parents.append(names.index(side + part))
+            names.append(f"{side}{part}.001")
+            offsets.append(whole.bind_translations[whole.names.index(side + end)] / 2)
+        parents[names.index(f"{side}ForeArm")] = names.index(f"{side}Arm.001")
+        offsets[names.index(f"{side}ForeArm")] = offsets[names.index(f"{side}Arm.001")]
+    stumps = sorted_by_parents(names, parents, offsets)
+    found, notes = retarget(SourceMotion(whole, walk(whole)), stumps)
+    assert not any("by the lengths" in note for note in notes)
+    for side in ("Left", "Right"):
+        ends = (f"{side}Arm", f"{side}ForeArm")
+        np.testing.assert_allclose(bone(stumps, found, *ends), bone(whole, walk(whole), *ends), atol=ANGLE_BOUND)
+        np.testing.assert_allclose(
+            bone(stumps, found, f"{side}ForeArm", f"{side}ForeArm.001"),
+            bone(whole, walk(whole), f"{side}ForeArm", f"{side}Hand"),
+            atol=ANGLE_BOUND,
+        )
+
+
+def sorted_by_parents(names: list[str], parents: list[int], offsets: list[np.ndarray]) -> Skeleton:
+    """Parents before children."""
+    order: list[int] = []
+    while len(order) < len(names):
+        order += [i for i, parent in enumerate(parents) if i not in order and (parent < 0 or parent in order)]
+    return upright(
+        [names[i] for i in order],
+        [order.index(parents[i]) if parents[i] >= 0 else -1 for i in order],
+        [offsets[i] for i in order],
+    )
 
 
 def test_names_go_before_lengths() -> None:

@@ -3,12 +3,14 @@
 from pathlib import Path
 
 import numpy as np
-from PIL import Image, UnidentifiedImageError
+from PIL import ExifTags, Image, ImageOps, UnidentifiedImageError
 
 from mua.arrays import Array
 from mua.atlas.pictures import in_8_bits
 from mua.capture.video import VIDEOS, MissingImage, video_frame
 from mua.errors import InputError
+
+TURNED, ON_SIDE = range(2, 9), range(5, 9)  # orientations of EXIF: turned or mirrored at all, by a quarter turn
 
 
 def read_picture(
@@ -26,13 +28,47 @@ def read_picture(
         return frame
     try:
         with Image.open(path) as opened:
-            require_size(path, opened.size, size)
-            clear = "A" in opened.getbands() or "transparency" in opened.info
-            return np.asarray(in_8_bits(opened).convert("RGBA" if clear else "RGB"))
+            image = _as_calibrated(path, opened, size)
+            clear = "A" in image.getbands() or "transparency" in image.info
+            return np.asarray(in_8_bits(image).convert("RGBA" if clear else "RGB"))
     except (UnidentifiedImageError, OSError, SyntaxError, ValueError) as error:
         if isinstance(error, InputError):
             raise
         raise InputError(f"{path}: cannot be read as an image: {error}") from error
+
+
+def picture_size(path: Path, *, like: tuple[int, int] | None) -> tuple[int, int]:
+    """Width and height of an image that its camera, calibrated for images of a size `like`, means."""
+    try:
+        with Image.open(path) as opened:
+            width, height = opened.size
+            if _orientation(opened) in ON_SIDE and (like is None or (width > height) != (like[0] > like[1])):
+                return height, width
+            return width, height
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read as an image: {error}") from error
+
+
+def _orientation(opened: Image.Image) -> int:
+    return int(opened.getexif().get(ExifTags.Base.Orientation, 1))
+
+
+def _as_calibrated(path: Path, opened: Image.Image, size: tuple[int, int]) -> Image.Image:
+    """The image as its camera was calibrated. OpenCV turns images as EXIF says, COLMAP does not: their sides tell."""
+    orientation = _orientation(opened)
+    if orientation in ON_SIDE and size[0] != size[1]:
+        return ImageOps.exif_transpose(opened) if opened.size == size[::-1] else _of_size(path, opened, size)
+    if orientation in TURNED:
+        raise InputError(
+            f"{path}: EXIF orientation is {orientation}, by which some programs turn images and others do not; "
+            "expected images without it that lie as in the calibration"
+        )
+    return _of_size(path, opened, size)
+
+
+def _of_size(path: Path, opened: Image.Image, size: tuple[int, int]) -> Image.Image:
+    require_size(path, opened.size, size)
+    return opened
 
 
 def read_mask(path: Path, *, number: int, size: tuple[int, int]) -> Array:
@@ -43,8 +79,9 @@ def read_mask(path: Path, *, number: int, size: tuple[int, int]) -> Array:
 def as_mask(
     picture: Array,  # [H, W, 3 or 4] uint8
 ) -> Array:
-    """Cover [H, W, 1] uint8; a mask of nothing but 0 and 1 is taken for 0 and 255."""
-    cover = picture[..., :3].max(axis=2, keepdims=True)
+    """Cover [H, W, 1] uint8: alpha of a cut-out, else brightness; nothing but 0 and 1 is taken for 0 and 255."""
+    cut_out = picture.shape[2] == 4 and np.ptp(picture[..., 3]) > 0
+    cover = picture[..., 3:] if cut_out else picture[..., :3].max(axis=2, keepdims=True)
     return cover * np.uint8(255) if cover.max() == 1 else cover
 
 

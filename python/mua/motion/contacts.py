@@ -9,6 +9,7 @@ from mua.arrays import Array
 LOW = 0.06  # of the leg: how far above its lowest a standing point may be
 SLOW = 0.35  # legs per second along the floor: faster points do not stand
 ON_FLOOR = 0.1  # of the height: a rest pose whose lowest joint is this near to 0 stands on the floor
+UNDER = 0.25  # of the height: how far below its lowest joint the soles of a figure without toes may be
 STANDING = 0.05  # quantile over frames of a point's height that counts as standing
 SHORTEST = 0.1  # seconds: a shorter contact is a passing foot
 
@@ -41,10 +42,13 @@ def spans(held: Array) -> Iterator[tuple[int, int]]:
     yield from zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True)
 
 
-def floor_of(at: Array) -> float:
-    """Height of the floor that a rest pose [J, 3] stands on: 0 where its lowest joint is near to it."""
-    lowest = float(at[:, 1].min())
-    return 0.0 if abs(lowest) < ON_FLOOR * np.ptp(at[:, 1]) else lowest
+def floor_of(at: Array, *, under: float = ON_FLOOR) -> float:
+    """Height of the floor that a rest pose [J, 3] stands on: 0 where its lowest joint is near to it.
+
+    under: of the height, how far the floor may be below that joint; UNDER for a character, which is there to its soles.
+    """
+    lowest, height = float(at[:, 1].min()), float(np.ptp(at[:, 1]))
+    return 0.0 if -ON_FLOOR * height < lowest < under * height else lowest
 
 
 def standing(heights: Array) -> float:

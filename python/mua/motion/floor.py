@@ -4,9 +4,9 @@ import numpy as np
 
 from mua import rotation
 from mua.arrays import Array
-from mua.motion.contacts import LOW, STANDING, floor_of, planted, standing
+from mua.motion.contacts import LOW, STANDING, UNDER, floor_of, planted, standing
 from mua.motion.detached import detached_joints
-from mua.motion.rest import IDENTITY, Rest, Y
+from mua.motion.rest import IDENTITY, Rest, Y, body_turn
 from mua.pose.joint_names import SIDES
 
 SOLES = ("foot", "toe")
@@ -64,7 +64,7 @@ def foot_heights(rest: Rest, turned: Array, at: Array) -> Array:
     Legs without feet end on the floor at rest, straight below them.
     """
     if soles := _soles(rest):
-        return np.asarray(at[:, soles, 1] - rest.target_at[soles, 1] + floor_of(rest.target_at))
+        return np.asarray(at[:, soles, 1] - rest.target_at[soles, 1] + floor_of(rest.target_at, under=UNDER))
     floor = min(floor_of(rest.target_at), 0.0)
     heights = [np.zeros(len(at))]
     for side in SIDES:
@@ -171,7 +171,8 @@ def _lift(
 ) -> tuple[float, list[str]]:
     """Metres by which to raise the target so that standing feet are as high as the source's, and what to say of it.
 
-    The height of a foot is that above its place in the rest pose. Where the source's rest pose shows no body
+    The height of a foot is that above its place in the rest pose, stood upright where it lies: files that turn only the
+    root to another up axis have such. Where the source's rest pose shows no body
     (`source_at` is None) or stands neither on the floor (ASF skeletons rest about the hips) nor where the clip's feet
     stand, the clip's lower foot is taken to stand, unless the whole clip is far above the floor and its feet do not
     step on one level up there.
@@ -180,8 +181,9 @@ def _lift(
     height = standing(heights)
     expected = 0.0
     feet = [rest.matches.chains[joint][0] for joint in soles]
-    rise = None if source_at is None else scale * standing(source_at[:, feet, 1] - rest.source_at[feet, 1])
-    if rise is not None and (floor_of(rest.source_at) == 0 or abs(rise) < LOWEST * leg):
+    upright = rotation.rotate(rotation.conjugate(body_turn(rest)), rest.source_at)
+    rise = None if source_at is None else scale * standing(source_at[:, feet, 1] - upright[feet, 1])
+    if rise is not None and (floor_of(upright) == 0 or abs(rise) < LOWEST * leg):
         expected = rise if rise >= -LOWEST * leg else 0.0  # below: a path that starts at the origin, not on the floor
     elif height > LOWEST * leg:
         if _level(heights, leg) and _steps(at[:, soles], rate, leg):

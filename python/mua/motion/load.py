@@ -6,6 +6,7 @@ from pathlib import Path
 
 from mua.errors import InputError
 from mua.motion.face import own_face
+from mua.motion.long_feet import put_down
 from mua.motion.match import Matches, match_joints, require_limbs
 from mua.motion.planted_feet import Feet, plant_feet
 from mua.motion.read import read_motion
@@ -114,7 +115,8 @@ def _put_on(
         if refuse:
             require_limbs(source.skeleton, skeleton, matches)
         clip, notes = retarget(source, skeleton, matches, rate=rate)
+        clip, down = (clip, ()) if feet == "keep" else put_down(source, skeleton, clip, matches)
         clip, held = plant_feet(source, skeleton, clip, matches, feet=feet)
     except InputError as error:
         raise error.of(path) from error
-    return LoadedMotion(clip, source, matches, (*notes, *held))
+    return LoadedMotion(clip, source, matches, (*notes, *down, *held))

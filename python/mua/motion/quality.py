@@ -7,7 +7,7 @@ import numpy as np
 
 from mua import rotation
 from mua.arrays import Array
-from mua.motion.contacts import floor_of, planted, speed, standing
+from mua.motion.contacts import UNDER, floor_of, planted, speed, standing
 from mua.motion.head_and_hands import hand_angles, hand_flaws, head_flaws, head_pitch
 from mua.motion.match import Matches
 from mua.motion.pair import Pair, Side
@@ -187,7 +187,7 @@ def _feet_height(side: Side) -> float | None:
     soles = side.soles()
     if not soles:
         return None
-    return standing(side.at[:, soles, 1] - side.rest_at[soles, 1]) + floor_of(side.rest_at)
+    return standing(side.at[:, soles, 1] - side.rest_at[soles, 1]) + floor_of(side.rest_at, under=UNDER)
 
 
 def _slide(pair: Pair) -> tuple[float | None, float | None]:

@@ -62,7 +62,8 @@ def _split(
 ) -> dict[str, tuple[int, ...]]:
     """Joints of all parts of a limb, none for those that it lacks; {} where names are enough or lengths say nothing."""
     upper, lower, end = (f"{side} {part}" for part in _main(parts))
-    twisted = end not in found and len(found.get(lower, ())) > 1
+    # a second joint of the lower part may be the hand or foot, unless the upper part has as many: twist joints in both
+    twisted = end not in found and len(found.get(lower, ())) > max(1, len(found.get(upper, ())))
     if not (upper in found or lower in found) or (upper in found and lower in found and not twisted):
         return {}
     chain = limb_chain(skeleton, at, found, side, parts)

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
 import numpy as np
-from PIL import Image
 
 from mua.arrays import Array
 from mua.capture.capture import Capture, CaptureClip
+from mua.capture.pictures import picture_size
 from mua.capture.readers.avatarrex import below
 from mua.capture.readers.calibrations import read_cameras
 from mua.capture.readers.calibrations.calibrated import Calibrated
@@ -44,17 +44,13 @@ class _Filmed:
         files = numbered_files((self.folder / self.pattern.format(camera=name, frame=0)).parent)
         return range(int(files[0].stem), int(files[-1].stem) + 1)
 
-    def size(self, camera: str) -> tuple[int, int]:
-        """Width and height of a camera's images."""
+    def size(self, camera: str, like: tuple[int, int] | None) -> tuple[int, int]:
+        """Width and height of a camera's images, which was calibrated for those of a size `like`."""
         if self.is_video:
             frame = video_frame(self.folder / self.pattern.format(camera=camera), 0)
             return frame.shape[1], frame.shape[0]
         files = numbered_files((self.folder / self.pattern.format(camera=camera, frame=0)).parent)
-        try:
-            with Image.open(files[0]) as opened:
-                return opened.size
-        except OSError as error:
-            raise InputError(f"{files[0]}: cannot be read as an image: {error}") from error
+        return picture_size(files[0], like=like)
 
 
 def read_calibrated(
@@ -80,7 +76,7 @@ def read_calibrated(
         raise InputError(f"{source}: found no images; looked for videos/cam00.mp4 and images/cam00/000000.jpg")
     pairs = _paired(read_cameras(calibration), images, calibration)
     turned = np.eye(3) if axes is None else axes
-    cameras = tuple(one.camera(images.size(name), name=name, scale=scale, axes=turned) for one, name in pairs)
+    cameras = tuple(one.camera(images.size(name, one.size), name=name, scale=scale, axes=turned) for one, name in pairs)
     return Capture(
         folder=folder,
         name=source.absolute().name,
@@ -137,15 +133,20 @@ def _short(name: str) -> str:
 
 def _clips(images: _Filmed, masks: _Filmed | None, motion: Path) -> tuple[CaptureClip, ...]:
     numbers = images.numbers()
-    there = [True] * len(numbers)
-    for one in (images, masks):
-        if one is not None and not one.is_video:
-            found = complete_frames(one.folder, (one.pattern,), images.cameras, numbers)
-            there = [a and b for a, b in zip(there, found, strict=True)]
-    runs = whole_runs(there)
+    kinds = [one for one in (images, masks) if one is not None and not one.is_video]
+    found = [complete_frames(one.folder, (one.pattern,), images.cameras, numbers) for one in kinds]
+    runs = whole_runs([all(one[i] for one in found) for i in range(len(numbers))])
     if not runs:
+        there = (
+            one.folder / one.pattern.format(camera=name, frame=i)
+            for i in numbers
+            for one in kinds
+            for name in images.cameras
+        )
+        missing = next((file for file in there if not file.is_file()), None)
         raise InputError(
             f"{images.folder}: no two frames in a row have images and masks of all {len(images.cameras)} cameras"
+            + ("" if missing is None else f"; {missing} is the first that is not there")
         )
     names = [f"frames_{numbers[first]:06d}" for first, _ in runs] if len(runs) > 1 else ["all"]
     return tuple(

@@ -4,6 +4,7 @@
 import { conjugate, multiply, rotate } from "../rotation.js";
 import { world } from "../skeleton.js";
 import { ancestors, SIDES } from "./joint_names.js";
+import { bodyTurn } from "./rest.js";
 import { length, mean, minus, plus, quantile, quaternion, times, turns, vector } from "./vectors.js";
 
 /** @typedef {import("./vectors.js").Vector} Vector */
@@ -17,6 +18,7 @@ const LOWEST = 0.25; // of the leg: a clip higher above the floor than this neve
 const LOW = 0.06; // of the leg: how far above its lowest a standing point may be
 const SLOW = 0.35; // legs per second along the floor: faster points do not stand
 const ON_FLOOR = 0.1; // of the height: a rest pose whose lowest joint is this near to 0 stands on the floor
+const UNDER = 0.25; // of the height: how far below its lowest joint the soles of a figure without toes may be
 const STANDING = 0.05; // quantile over frames of a point's height that counts as standing
 const SHORTEST = 0.1; // seconds: a shorter contact is a passing foot
 const SOLES = ["foot", "toe"];
@@ -207,10 +209,11 @@ function liftOf(rest, placed, source, { rate, scale, leg }) {
     (joint) => joint >= 0,
   );
   const froms = soles.map((joint) => rest.chain(joint)[0]);
-  const height = standingHeight(placed, rest.targetAt, soles) + floorOf(rest.targetAt);
-  const rise = scale * standingHeight(source, rest.sourceAt, froms);
+  const height = standingHeight(placed, rest.targetAt, soles) + floorOf(rest.targetAt, UNDER);
+  const upright = standingUp(rest);
+  const rise = scale * standingHeight(source, upright, froms);
   let expected = 0;
-  if (floorOf(rest.sourceAt) === 0 || Math.abs(rise) < LOWEST * leg) {
+  if (floorOf(upright) === 0 || Math.abs(rise) < LOWEST * leg) {
     if (rise >= -LOWEST * leg) expected = rise; // below: a path that starts at the origin, not on the floor
   } else if (height > LOWEST * leg) {
     const lower = placed.map(({ places }) =>
@@ -220,6 +223,13 @@ function liftOf(rest, placed, source, { rate, scale, leg }) {
     expected = level && steps(placed, soles, rate, leg) ? 0 : height;
   }
   return expected - height;
+}
+
+/** Places of the source at rest, stood upright where it lies: files that turn only the root to another up axis. */
+function standingUp(/** @type {Rest} */ rest) {
+  const [turn, places] = [conjugate(bodyTurn(rest)), new Float64Array(rest.sourceAt.length)];
+  for (let at = 0; at < places.length; at += 3) places.set(rotate(turn, rest.sourceAt, 0, at), at);
+  return places;
 }
 
 /** Whether some joint stands at times and moves at others. @param {Posed[]} placed @param {number[]} joints @param {number} rate @param {number} leg */
@@ -243,10 +253,10 @@ function standingHeight(posed, rest, joints) {
 }
 
 /** Height of the floor that a rest pose stands on: 0 where its lowest joint is near to it. */
-function floorOf(/** @type {Float64Array} */ at) {
+function floorOf(/** @type {Float64Array} */ at, under = ON_FLOOR) {
   const heights = Array.from(at).filter((_, i) => i % 3 === 1);
   const [low, high] = [Math.min(...heights), Math.max(...heights)];
-  return Math.abs(low) < ON_FLOOR * (high - low) ? 0 : low;
+  return low > -ON_FLOOR * (high - low) && low < under * (high - low) ? 0 : low;
 }
 
 /** The same for a target without feet: its legs end on the floor, straight below them at rest. @param {Rest} rest @param {Posed[]} placed */

@@ -19,6 +19,7 @@ namespace Mua.Motion
             })).ToArray();
 
         private const double OnFloor = 0.1; // of the height: a rest pose whose lowest joint is this near to 0 stands on the floor
+        private const double Under = 0.25; // of the height: how far below its lowest joint the soles of a figure without toes may be
 
         private readonly RestPoses rest;
         private readonly Skeleton target;
@@ -43,7 +44,7 @@ namespace Mua.Motion
             mover = target.Ancestors(target.Root).Contains(top) ? top : target.Root;
             soles = JointNames.Sides.SelectMany(side => new[] { rest.Joint(side + " foot"), rest.Joint(side + " toe") })
                 .Where(joint => joint >= 0).ToArray();
-            floor = FloorOf(Enumerable.Range(0, target.JointCount).Select(joint => Vector3D.Load(rest.TargetAt, joint).Y));
+            floor = FloorOf(Enumerable.Range(0, target.JointCount).Select(joint => Vector3D.Load(rest.TargetAt, joint).Y), Under);
             KnowsFloor = soles.Length == 0 || FloorOf(rest.SourcePlaces().Values.Select(at => at.Y)) == 0;
             scale = LegScale();
             detached = FindDetached().ToArray();
@@ -203,10 +204,10 @@ namespace Mua.Motion
         }
 
         /// <summary>Height of the floor that joints of these heights stand on: 0 where the lowest is near to it.</summary>
-        private static double FloorOf(IEnumerable<double> heights)
+        private static double FloorOf(IEnumerable<double> heights, double under = OnFloor)
         {
             double low = heights.Min(), high = heights.Max();
-            return Math.Abs(low) < OnFloor * (high - low) ? 0 : low;
+            return low > -OnFloor * (high - low) && low < under * (high - low) ? 0 : low;
         }
 
         private static void Add(BothPlaces bone, ref double ours, ref double theirs)

@@ -46,7 +46,8 @@ def read_colmap(folder: Path) -> tuple[Calibrated, ...]:
     except (OSError, ValueError, IndexError, struct.error) as error:
         if isinstance(error, InputError):
             raise
-        raise InputError(f"{folder}: cameras{end} and images{end} cannot be read as COLMAP's: {error}") from error
+        reason = error if end == ".txt" or isinstance(error, OSError) else "a file is cut short or damaged"
+        raise InputError(f"{folder}: cameras{end} and images{end} cannot be read as COLMAP's: {reason}") from error
     if not seen:
         raise InputError(f"{images}: holds no image")
     return tuple(_camera(images, name, pose, number, lenses) for name, number, pose in seen)
