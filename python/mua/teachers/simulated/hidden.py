@@ -21,7 +21,7 @@ from mua.rig.character import Character
 from mua.rig.moving import moving_joints
 from mua.teachers.simulated.surface import SkinnedSurface
 from mua.training.threads import in_order
-from mua.training.warp_start import start
+from mua.training.warp_start import NO_NANS, start
 
 DEVICE = "cpu"
 SOLID = 0.9  # opacity from which a texel hides what is behind it
@@ -37,8 +37,7 @@ INSIDE = wp.constant(1.0e-3)  # share of a triangle's sides near which only the 
 LIFT = 5e-4  # metres on a person, from which a ray starts: what lies closer is the surface itself
 
 start()
-# No ray is NaN, so that a minimum is one instruction: of those of the boxes that rays meet, a fifth of all time.
-wp.set_module_options({"cpu_compiler_flags": f"{wp.config.cpu_compiler_flags or '-march=native'} -menable-no-nans"})
+wp.set_module_options(NO_NANS)  # a fifth of the time, by minima of the boxes that rays meet
 
 
 @wp.func
