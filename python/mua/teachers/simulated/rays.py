@@ -20,7 +20,7 @@ DEVICE = "cpu"
 LANES = 16  # boxes of a node, triangles of a leaf
 WAITING = 128  # nodes of a walk down the tree at most: fifteen of each level but the last
 NOWHERE = 1e30  # metres: low corner of boxes that no ray meets, which fill up a node
-SIDES = np.float32([1, 1, 1, -1, -1, -1])[:, None]
+SIDES = np.array([[1], [1], [1], [-1], [-1], [-1]], np.float32)
 CURVE_BITS = 10  # of a place on the curve along each axis
 
 start()
