@@ -1,5 +1,8 @@
 """Whether rays meet a surface, against every triangle in turn in double precision."""
 
+# mypy: disable-error-code="index, no-untyped-def"
+# (the body of the kernel is Warp's language, not Python)
+
 from itertools import product
 
 import numpy as np
@@ -12,7 +15,7 @@ from mua.teachers.simulated.rays import DEVICE, LANES, Tree, meets
 
 
 @wp.kernel(enable_backward=False)
-def ask(  # type: ignore[no-untyped-def]
+def ask(
     bottom: int,
     children: wp.array[int],
     boxes: wp.array[float],
@@ -28,7 +31,7 @@ def ask(  # type: ignore[no-untyped-def]
 def met(tree: Tree, vertices: Array, origins: Array, directions: Array) -> Array:
     """Which rays [n] meet a surface."""
     found = wp.zeros(len(origins), dtype=bool, device=DEVICE)
-    rays = (wp.array(values, dtype=wp.vec3, device=DEVICE) for values in (origins, directions))
+    rays: list[wp.array] = [wp.array(values, dtype=wp.vec3, device=DEVICE) for values in (origins, directions)]
     wp.launch(ask, dim=len(origins), inputs=[*tree.at(vertices), *rays], outputs=[found], device=DEVICE)
     return np.asarray(found.numpy())
 
@@ -37,7 +40,8 @@ def by_every_triangle(triangles: Array, origins: Array, directions: Array) -> Ar
     """Which rays [n] meet any of triangles [F, 3, 3]: the plane's point, and its barycentric coordinates."""
     columns = np.moveaxis(triangles, 1, 2)[None] - origins[:, None, :, None]
     along = np.linalg.solve(columns, directions[:, None, :, None])[..., 0]  # directions as sums of corners
-    return np.asarray((along >= 0).all(axis=2).any(axis=1))
+    inside: Array = (along >= 0).all(axis=2)
+    return inside.any(axis=1)
 
 
 def random_rays(count: int, seed: int) -> tuple[Array, Array]:
