@@ -40,8 +40,7 @@ def by_every_triangle(triangles: Array, origins: Array, directions: Array) -> Ar
     """Which rays [n] meet any of triangles [F, 3, 3]: the plane's point, and its barycentric coordinates."""
     columns = np.moveaxis(triangles, 1, 2)[None] - origins[:, None, :, None]
     along = np.linalg.solve(columns, directions[:, None, :, None])[..., 0]  # directions as sums of corners
-    inside: Array = (along >= 0).all(axis=2)
-    return inside.any(axis=1)
+    return np.asarray(along.min(axis=2).max(axis=1) >= 0)
 
 
 def random_rays(count: int, seed: int) -> tuple[Array, Array]:

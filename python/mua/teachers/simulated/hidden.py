@@ -35,7 +35,7 @@ LAYERS = wp.constant(4)  # of cut-out surface that a ray passes
 LIFT = 5e-4  # metres on a person, from which a ray starts: what lies closer is the surface itself
 
 start()
-wp.set_module_options(NO_NANS)  # a fifth of the time, by minima of the boxes that rays meet
+wp.set_module_options(NO_NANS)
 
 
 @wp.kernel(enable_backward=False)
