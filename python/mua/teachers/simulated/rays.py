@@ -69,7 +69,7 @@ MEETS = """
                 float qx = sy * ez - sz * ey, qy = sz * ex - sx * ez, qz = sx * ey - sy * ex;
                 float volume = ex * px + ey * py + ez * pz;
                 float sign = volume < 0.0f ? -1.0f : 1.0f;
-                float size = sign * volume, least = -1e-5f * size;
+                float size = sign * volume, least = -1e-6f * size;
                 float u = sign * (sx * px + sy * py + sz * pz), v = sign * (dx * qx + dy * qy + dz * qz);
                 float t = sign * (fx * qx + fy * qy + fz * qz);
                 any |= (size > 0.0f) & (u >= least) & (v >= least) & (u + v <= size - least) & (t >= 0.0f);
