@@ -12,7 +12,7 @@ from mua.arrays import Array
 from mua.avatar.decode import express, pose_splats
 from mua.baking.check import fidelity_of
 from mua.characters.read import read_character
-from mua.fidelity import faces, report
+from mua.fidelity import faces, report, source_faces
 from mua.fidelity.canvas import Area, opened
 from mua.fidelity.face_sheet import face_sheet
 from mua.fidelity.posing import Poser
@@ -22,7 +22,7 @@ from mua.teachers.simulated.still import StillTeacher
 
 TEXELS = 192
 ROUNDED = 64 * 2**-24  # colours of some splats over each other, of channels that lie in memory in another order
-ONLY_THERE = faces._patched
+ONLY_THERE = source_faces.patched
 
 
 def grinning_character(tmp_path: Path) -> Character:
@@ -44,7 +44,7 @@ def test_expressions_look_like_the_files_own_targets(tmp_path: Path) -> None:
         assert not np.array_equal(shot.source, fidelity.face.rest.source)
     assert not any("The face" in sentence for sentence in warnings)
     assert [*report.as_dict(fidelity)["expressions"]] == ["at rest", "lean", "lift"]
-    assert face_sheet(fidelity.face).width == 2 * 3 * faces.SCREEN[0]
+    assert face_sheet(fidelity.face).width == 2 * 3 * source_faces.SCREEN[0]
     plain, _ = fidelity_of(character, (), texels=TEXELS)
     assert plain is not None
     assert plain.face is None
@@ -75,7 +75,8 @@ def test_an_expression_drawn_where_it_moves_is_the_picture_drawn_whole(
         areas.append(area)
         return ONLY_THERE(image, area, drawn)
 
-    monkeypatch.setattr(faces, "_patched", patched)
+    for module in (faces, source_faces):
+        monkeypatch.setattr(module, "patched", patched)
     with opened() as context:
         parts = faces.compare_faces(context, teacher, source=character.source, rest=rest)
         assert areas
@@ -94,17 +95,17 @@ def test_splats_that_an_expression_moves_lie_among_the_others_as_if_all_were_dra
     assert character.source is not None
     teacher = StillTeacher(character, texels=TEXELS)
     rest = Poser(character.source, character.skeleton).rest()
-    still, camera = teacher.frame(rest.pose), faces.camera_of(character.source.scene, rest)
+    still, camera = teacher.frame(rest.pose), source_faces.camera_of(character.source.scene, rest)
     with opened() as context:
         face = faces.compare_faces(context, teacher, source=character.source, rest=rest)
         assert face is not None
         for shot, weights in zip(face.expressions, np.eye(2, dtype=np.float32), strict=True):
             mesh, texture = express(teacher.rig, still.mesh, texture=still.texture, weights=weights)
             posed = pose_splats(teacher.rig, mesh, texture=texture, pose=rest.pose)
-            expected = SplatPainter(context, faces.SCREEN)(posed, camera)
+            expected = SplatPainter(context, source_faces.SCREEN)(posed, camera)
             assert np.quantile(np.abs(shot.splats - expected), 0.99) < ROUNDED
             assert not np.allclose(shot.splats, face.rest.splats, atol=0.1)
 
 
 def whole_screen() -> Area:
-    return Area(0, 0, *faces.SCREEN)
+    return Area(0, 0, *source_faces.SCREEN)

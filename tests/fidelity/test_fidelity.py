@@ -100,6 +100,19 @@ def test_the_nearer_card_hides_the_farther_whatever_comes_first(context: moderng
         np.testing.assert_allclose(drawn(context, parts, materials)[4, 4, :2], np.eye(2)[near], atol=EIGHT_BITS)
 
 
+@pytest.mark.parametrize("first", [0, 1])
+def test_drawing_what_is_near_first_changes_nothing_but_the_order(context: moderngl.Context, first: int) -> None:
+    """Of two triangles in one place the first of the file is seen, and the near card hides the far one."""
+    materials = [plain(255, 0, 0, 255), plain(0, 255, 0, 255), plain(0, 0, 255, 200)]
+    parts = [card(depth=0.5, material=1 - first), card(depth=0.5, material=first), card(depth=0.6, material=2)]
+    parts.append(card(depth=-0.5, material=0, low=0.3))
+    expected = drawn(context, parts, materials)
+    painter = Painter(context, parts, materials, screen=(SIDE, SIDE))
+    painter.near_first([part.positions for part in parts], AHEAD)
+    np.testing.assert_array_equal(painter([part.positions for part in parts], AHEAD), expected)
+    np.testing.assert_allclose(expected[4, 2, :2], np.eye(2)[1 - first], atol=EIGHT_BITS)
+
+
 def test_what_is_half_transparent_lies_over_what_is_behind(context: moderngl.Context) -> None:
     materials = [plain(255, 0, 0, 128), plain(0, 255, 0, 255)]
     share = 128 / 255

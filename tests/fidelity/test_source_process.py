@@ -11,8 +11,8 @@ from mua.atlas.surfaces import Surfaces
 from mua.characters.read import read_surfaces
 from mua.fidelity import source_process
 from mua.fidelity.canvas import opened
-from mua.fidelity.faces import source_faces
 from mua.fidelity.posing import Poser
+from mua.fidelity.source_faces import source_faces
 from mua.fidelity.source_process import SourceProcess
 
 

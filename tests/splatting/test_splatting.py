@@ -20,7 +20,7 @@ from mua.kernels.splat_project import LEAST_OPACITY, REACH, splat_project
 from mua.kernels.splat_project import half_extents as extents_of
 from mua.kernels.splat_sort import splat_sort
 from mua.splatting.projection import Eye, TorchSplats, half_extents, project
-from mua.splatting.rasterise import draw_quads, largest_shares, rasterise, rasterise_views
+from mua.splatting.rasterise import BLOCKS, draw_quads, largest_shares, rasterise, rasterise_views
 from mua.splatting.tiles import TILE, assign, split
 
 STEP = 1e-8  # the step of the finite differences; a larger one reaches over the edges of windows
@@ -291,6 +291,23 @@ def test_images_and_gradients_do_not_depend_on_the_number_of_threads() -> None:
             image.square().sum().backward()
         found.append((image.detach(), *(getattr(tensors, name).grad for name in DIFFERENTIATED)))
     assert all(torch.equal(one, other) for one, other in zip(*found, strict=True))
+
+
+def test_images_gradients_and_shares_do_not_depend_on_how_many_pixels_a_thread_has(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """CUDA's kernels have one pixel, the CPU's eight."""
+    found = []
+    for block in BLOCKS.values():
+        monkeypatch.setitem(BLOCKS, "cpu", block)
+        tensors, eyes, bounds = views()
+        image = rasterise(tensors, eyes[0], bounds)
+        image.square().sum().backward()
+        gradients = [getattr(tensors, name).grad for name in DIFFERENTIATED]
+        found.append((image.detach(), largest_shares(tensors, eyes[0], bounds).detach(), *gradients))
+    one, other = found
+    torch.testing.assert_close(one, other, rtol=1e-10, atol=1e-12)
+    assert BLOCKS["cuda"] == (1, 1)
 
 
 @contextmanager

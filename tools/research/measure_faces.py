@@ -36,8 +36,8 @@ from mua.channels import APPEARANCE, ATTRIBUTES
 from mua.errors import InputError
 from mua.fidelity.background import background_for, over
 from mua.fidelity.canvas import opened
-from mua.fidelity.faces import AWAY, MOVES, USUAL
 from mua.fidelity.measure import Agreement, agreement, together
+from mua.fidelity.source_faces import AWAY, MOVES, USUAL
 from mua.fidelity.splats import SplatPainter
 from mua.fidelity.strips import caption, difference, sheet
 from mua.files.write import replacing, write_bytes

@@ -38,11 +38,12 @@ from mua.rig.texel_binding import bind_texels
 from mua.teachers.simulated.still import StillTeacher
 from mua.teachers.simulated.teacher import SimulatedTeacher
 from mua.teachers.simulated.texels import SurfaceTexels
+from mua.training.blas_threads import one_blas_thread
 from mua.training.memory import release_memory, return_large_blocks
 
 # Steps of the fit, and training frames for each further one: less than a tenth of the time of a bake.
-FEWEST_STEPS, FRAMES_OF_A_STEP = 40, 6
-FRAMES = "frames 5"  # raised where the stand-in teacher or the fit changes what it makes of the same input
+FEWEST_STEPS, FRAMES_OF_A_STEP = 50, 6
+FRAMES = "frames 6"  # raised where the stand-in teacher or the fit changes what it makes of the same input
 FITTED = b"fitted"  # part of the key of a fit and of the recording that it corrects, which have one name
 
 
@@ -74,7 +75,8 @@ def _bake(settings: BakeSettings, device: torch.device, listener: Listener, proc
     listener.stage("character")
     if settings.character is None:  # else once its file is known to be sound
         start()
-    character = load_baked_character(settings, read=start)
+    with one_blas_thread():
+        character = load_baked_character(settings, read=start)
     clips, notes = clips_of(settings, character)
     clips, of_face = faced(character, clips, settings.face)
     for sentence in (*character.notes, describe_texels(character, settings.student.texels), *notes, *of_face):
@@ -91,8 +93,9 @@ def _bake(settings: BakeSettings, device: torch.device, listener: Listener, proc
 
     require_writable(settings.output)
     still = cache(partial(StillTeacher, character, texels=settings.student.texels))
-    corrections = _fitted(settings, character, still, planned, listener)
-    laid, fidelity = _compared(settings, character, clips, still, corrections, listener)
+    with one_blas_thread():
+        corrections = _fitted(settings, character, still, planned, listener)
+        laid, fidelity = _compared(settings, character, clips, still, corrections, listener)
     compared = [] if fidelity is None else worst_strips(fidelity, CELL)
     del still, fidelity
     character = replace(character, source=None)  # its textures may be large

@@ -6,7 +6,8 @@ from PIL import Image
 from mua.arrays import Array
 from mua.avatar.rendering import to_bytes
 from mua.fidelity.background import background_for, over
-from mua.fidelity.faces import SCREEN, ExpressionShot, FaceFidelity
+from mua.fidelity.faces import ExpressionShot, FaceFidelity
+from mua.fidelity.source_faces import SCREEN
 from mua.fidelity.strips import caption, difference, sheet
 
 COLUMNS = 2  # expressions beside each other

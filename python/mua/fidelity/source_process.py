@@ -16,8 +16,8 @@ from mua.arrays import Array
 from mua.atlas.surfaces import Surfaces
 from mua.errors import InputError
 from mua.fidelity.canvas import opened
-from mua.fidelity.faces import source_faces
 from mua.fidelity.posing import Poser
+from mua.fidelity.source_faces import source_faces
 from mua.pose.skeleton import Skeleton
 from mua.scene import Source
 

@@ -24,6 +24,7 @@ _FIRST = threading.Lock()
 _LAUNCHED: set[tuple[Any, str]] = set()  # kernels and the devices that they are loaded on
 
 REALS = {torch.float32: wp.float32, torch.float64: wp.float64}
+BLOCKS = {"cpu": (2, 4), "cuda": (1, 1)}  # columns and rows of the pixels of a thread
 
 
 def rasterise(
@@ -83,7 +84,7 @@ def largest_shares(
     quads = project(splats, eye, bounds)
     shapes = quads.shapes.detach().contiguous()
     largest = shapes.new_zeros(len(shapes))
-    _launch(passes(REALS[shapes.dtype]).weigh, _tiles(shapes, eye.screen), [shapes, largest], least)
+    _launch("weigh", _tiles(shapes, eye.screen), [shapes, largest], least)
     return torch.zeros_like(splats.opacities).index_copy(0, quads.splats, largest)
 
 
@@ -97,8 +98,7 @@ class _Draw(torch.autograd.Function):
         shapes, colors = shapes.contiguous(), colors.contiguous()
         image, left = shapes.new_empty(tiles.pixels, 4), shapes.new_empty(tiles.pixels)
         ends = torch.empty(tiles.pixels, dtype=torch.int32, device=shapes.device)
-        kernels = passes(REALS[shapes.dtype])
-        _by_parts(tiles, lambda part: _launch(kernels.forward, part, [shapes, colors, image, left, ends]), threads)
+        _by_parts(tiles, lambda part: _launch("forward", part, [shapes, colors, image, left, ends]), threads)
         context.save_for_backward(shapes, colors, left, ends)
         context.tiles, context.threads = tiles, threads
         return image
@@ -106,11 +106,11 @@ class _Draw(torch.autograd.Function):
     @staticmethod
     def backward(context: Any, *gradients: torch.Tensor) -> tuple[torch.Tensor | None, ...]:
         shapes, colors, left, ends = context.saved_tensors
-        kernels, gradient = passes(REALS[shapes.dtype]), gradients[0].contiguous()
+        gradient = gradients[0].contiguous()
 
         def added(part: Tiles) -> tuple[torch.Tensor, torch.Tensor]:
             by_shapes, by_colors = torch.zeros_like(shapes), torch.zeros_like(colors)
-            _launch(kernels.backward, part, [shapes, colors, left, ends, gradient, by_shapes, by_colors])
+            _launch("backward", part, [shapes, colors, left, ends, gradient, by_shapes, by_colors])
             return by_shapes, by_colors
 
         shares = zip(*_by_parts(context.tiles, added, context.threads), strict=True)
@@ -128,12 +128,14 @@ def _by_parts(tiles: Tiles, work: Callable[[Tiles], T], threads: int) -> list[T]
     return list(in_order(work, split(tiles, PARTS), threads=min(threads, PARTS)))
 
 
-def _launch(kernel: Any, tiles: Tiles, tensors: list[torch.Tensor], *numbers: float) -> None:
-    """A thread for each pixel of each tile."""
-    device = wp.device_from_torch(tensors[0].device)
+def _launch(name: str, tiles: Tiles, tensors: list[torch.Tensor], *numbers: float) -> None:
+    """A pass over the pixels of some tiles."""
+    device, block = wp.device_from_torch(tensors[0].device), BLOCKS[tensors[0].device.type]
+    kernel = getattr(passes(REALS[tensors[0].dtype], block), name)
     held = (tiles.places, tiles.starts, tiles.quads, *tensors)
     arrays = [wp.from_torch(tensor, requires_grad=False) for tensor in held]
     stream = wp.stream_from_torch(tensors[0].device) if device.is_cuda else None
+    dim = len(tiles.places) * TILE * TILE // (block[0] * block[1])
     with nullcontext() if (kernel, device.alias) in _LAUNCHED else _FIRST:
-        wp.launch(kernel, dim=len(tiles.places) * TILE * TILE, inputs=[*arrays, *numbers], device=device, stream=stream)
+        wp.launch(kernel, dim=dim, inputs=[*arrays, *numbers], device=device, stream=stream)
         _LAUNCHED.add((kernel, device.alias))

@@ -7,6 +7,10 @@ from contextlib import contextmanager
 
 import warp as wp
 
+# Module options for kernels whose numbers are never NaN: a minimum is one instruction then. Warp's own headers use NaN
+# in what no kernel of ours calls, which the compiler would warn of at a first launch.
+FLAGS = wp.config.cpu_compiler_flags or "-march=native"
+NO_NANS = {"cpu_compiler_flags": f"{FLAGS} -menable-no-nans -Wno-nan-infinity-disabled"}
 NO_GPU = b"Could not find or load the NVIDIA CUDA driver"  # the teacher runs on the CPU anyway
 
 

@@ -19,9 +19,10 @@ from mua import rotation
 from mua.arrays import Array
 from mua.rig.character import Character
 from mua.rig.moving import moving_joints
+from mua.teachers.simulated.rays import Tree, meets
 from mua.teachers.simulated.surface import SkinnedSurface
 from mua.training.threads import in_order
-from mua.training.warp_start import start
+from mua.training.warp_start import NO_NANS, start
 
 DEVICE = "cpu"
 SOLID = 0.9  # opacity from which a texel hides what is behind it
@@ -31,61 +32,33 @@ TURN = np.radians(120)  # of a joint, at most
 WELL_MOVED = 0.1  # of the farthest: vertices that an expression moves less uncover nothing
 FAR = wp.constant(1.0e6)  # metres: as far as a ray goes
 LAYERS = wp.constant(4)  # of cut-out surface that a ray passes
-NONE, ALONE = wp.constant(-1), wp.constant(-2)  # in place of a triangle that a ray has met
-LARGE = 4  # texels on a triangle, of which the next one often looks at the same triangles: the nearest is then sought
-INSIDE = wp.constant(1.0e-3)  # share of a triangle's sides near which only the search among all triangles decides
 LIFT = 5e-4  # metres on a person, from which a ray starts: what lies closer is the surface itself
 
 start()
-# No ray is NaN, so that a minimum is one instruction: of those of the boxes that rays meet, a fifth of all time.
-wp.set_module_options({"cpu_compiler_flags": f"{wp.config.cpu_compiler_flags or '-march=native'} -menable-no-nans"})
-
-
-@wp.func
-def meets(solid: wp.uint64, face: int, start: wp.vec3, away: wp.vec3) -> bool:
-    """Whether a ray meets the inside of one triangle (Moeller and Trumbore 1997)."""
-    mesh = wp.mesh_get(solid)
-    corner = mesh.points[mesh.indices[3 * face]]
-    one = mesh.points[mesh.indices[3 * face + 1]] - corner
-    other = mesh.points[mesh.indices[3 * face + 2]] - corner
-    across = wp.cross(away, other)
-    volume = wp.dot(one, across)
-    apart = start - corner
-    along = wp.cross(apart, one)
-    u, v = wp.dot(apart, across) / volume, wp.dot(away, along) / volume
-    return u > INSIDE and v > INSIDE and u + v < 1.0 - INSIDE and wp.dot(other, along) / volume > 0.0
+wp.set_module_options(NO_NANS)
 
 
 @wp.kernel(enable_backward=False)
 def look_out(
-    solid: wp.uint64,
+    bottom: int,
+    children: wp.array[int],
+    boxes: wp.array[float],
+    leaves: wp.array[float],
     cut: wp.uint64,
     uv: wp.array[wp.vec2],
     shown: wp.array2d[wp.bool],
     points: wp.array[wp.vec3],
     directions: wp.array[wp.vec3],
     lift: float,
-    met: wp.array[int],
     seen: wp.array[wp.bool],
 ):
-    """Whether a ray from each point meets no triangle of `solid`, and `cut` only where the texture shows nothing.
-
-    `met` is the triangle that the last ray met in each direction: the next point is close by, and often meets it too.
-    It is NONE before that, and ALONE where triangles are too small for that to help.
-    """
+    """Whether a ray from each point meets no triangle of a tree, and `cut` only where the texture shows nothing."""
     i = wp.tid()
     for k in range(directions.shape[0]):
         if not seen[i]:
             away = directions[k]
             start = points[i] + lift * away
-            free = met[k] < 0 or not meets(solid, met[k], start, away)
-            if free and met[k] == ALONE:
-                free = not wp.mesh_query_ray_anyhit(solid, start, away, FAR)
-            elif free:
-                first = wp.mesh_query_ray(solid, start, away, FAR)
-                free = not first.result
-                if first.result:
-                    met[k] = first.face
+            free = not meets(bottom, children, boxes, leaves, start, away)
             for _layer in range(LAYERS):
                 if free and not seen[i]:
                     hit = wp.mesh_query_ray(cut, start, away, FAR)
@@ -108,7 +81,7 @@ def showing_instead(
 ) -> Array:
     """The texel [N] whose colour each one shows: its own, or that of the nearest solid one that can be seen."""
     cut = np.asarray(np.isin(character.mesh.faces, corners[~solid]).all(axis=1))
-    covers = _Covers(character, cut=cut, texels=len(corners))
+    covers = _Covers(character, cut=cut)
     lift = LIFT * float(np.ptp(character.mesh.vertices, axis=0).max())
     hidden = np.arange(len(corners))
     rng = np.random.default_rng(0)
@@ -166,14 +139,12 @@ class _Covers:
         character: Character,
         *,
         cut: Array,  # [F] bool: faces with texels that something shows through
-        texels: int,
     ) -> None:
         mesh = character.mesh
-        self._met = NONE if texels > LARGE * len(mesh.faces) else ALONE
-        self._faces = [mesh.faces[~cut], mesh.faces[cut]]
+        self._solid, self._cut = mesh.faces[~cut], mesh.faces[cut]
         self._uv = wp.array(mesh.uv[mesh.uv_faces[cut]].reshape(-1, 2), dtype=wp.vec2, device=DEVICE)
         self._shown = wp.array(character.base_color[..., 3] >= SOLID * 255, dtype=bool, device=DEVICE)
-        self._face_meshes: list[wp.Mesh] = []
+        self._tree: Tree | None = None
 
     def seen(self, points: Array, vertices: Array, *, away: Array, lift: float, face: bool) -> Array:
         """Which points [n] are not covered from all sides while the surface is at `vertices` [V, 3].
@@ -182,8 +153,10 @@ class _Covers:
         """
         if not len(points):
             return np.empty(0, bool)
-        meshes = self._with_face(vertices) if face else [_mesh(vertices, faces) for faces in self._faces]
-        surface = [*(mesh.id for mesh in meshes), self._uv, self._shown]
+        tree = self._tree if face and self._tree else Tree(vertices, self._solid)
+        self._tree = tree if face else None  # what an expression moves needs no other order of triangles
+        cut = _mesh(vertices, self._cut)
+        surface = [*tree.at(vertices), cut.id, self._uv, self._shown]
         directions = wp.array(away, dtype=wp.vec3, device=DEVICE)
 
         def looked(some: Array) -> Array:
@@ -193,7 +166,6 @@ class _Covers:
                 wp.array(some, dtype=wp.vec3, device=DEVICE),
                 directions,
                 lift,
-                wp.full(len(away), self._met, dtype=int, device=DEVICE),
             ]
             wp.launch(look_out, dim=len(some), inputs=inputs, outputs=[seen], device=DEVICE)
             return np.asarray(seen.numpy())
@@ -201,15 +173,6 @@ class _Covers:
         wp.load_module(__name__, device=DEVICE)  # two threads must not do that at once
         threads = min(os.cpu_count() or 1, len(points))
         return np.concatenate(list(in_order(looked, np.array_split(points, threads), threads=threads)))
-
-    def _with_face(self, vertices: Array) -> list[wp.Mesh]:
-        """Meshes of the bind pose with an expression; what differs so little needs no new tree of boxes."""
-        if not self._face_meshes:
-            self._face_meshes = [_mesh(vertices, faces) for faces in self._faces]
-        for mesh in self._face_meshes:
-            mesh.points.assign(vertices)
-            mesh.refit()
-        return self._face_meshes
 
 
 def _mesh(vertices: Array, faces: Array) -> wp.Mesh:

@@ -1,0 +1,87 @@
+"""Each expression of a character as its file draws it: a close look at the face.
+
+It loads little, because a process of its own draws these images.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+
+import moderngl
+import numpy as np
+
+from mua.arrays import Array
+from mua.avatar.camera import Camera, orbit
+from mua.fidelity.canvas import Area
+from mua.fidelity.painter import Painter
+from mua.fidelity.posing import Moment, skinned
+from mua.scene import Part, Scene
+
+SCREEN = (288, 288)  # width, height, pixels
+MOVES = 0.1  # of how far an expression moves any vertex: those that it moves more are in the picture
+USUAL = 97  # percent of the vertices that are moved: a hat that one expression lifts does not make the picture
+AWAY = float(np.radians(15))  # of the view from the front, so that depth shows
+
+
+def source_faces(context: moderngl.Context, scene: Scene, rest: Moment, names: Sequence[str]) -> Iterator[Array]:
+    """Images [H, W, 4] of the file's own meshes at rest and in each expression alone."""
+    of_source = _Source(context, scene, rest, camera_of(scene, rest))
+    yield of_source.at_rest
+    yield from map(of_source.expressed, names)
+
+
+class _Source:
+    """Draws the file's own meshes; for an expression only where it moves them."""
+
+    def __init__(self, context: moderngl.Context, scene: Scene, rest: Moment, camera: Camera) -> None:
+        self._scene, self._rest, self._camera = scene, rest, camera
+        self._paint = Painter(context, scene.parts, scene.materials, screen=SCREEN)
+        self._places = [skinned(scene, part, rest.nodes) for part in scene.parts]
+        self._paint.near_first(self._places, camera)
+        self.at_rest = self._paint(self._places, camera)
+
+    def expressed(self, name: str) -> Array:
+        """The image [H, W, 4] in one expression."""
+        places, moved = list(self._places), [np.empty((0, 3))]
+        for index, part in enumerate(self._scene.parts):
+            if vertices := [target.vertices for target in part.targets if target.name == name]:
+                places[index] = skinned(self._scene, _with_target(part, name), self._rest.nodes)
+                corners = np.unique(part.faces[np.isin(part.faces, np.concatenate(vertices)).any(axis=1)])
+                moved += [at[index][corners] for at in (self._places, places)]
+        area = Area.of_points(np.concatenate(moved), self._camera)
+        return patched(self.at_rest, area, lambda: self._paint(places, self._camera, area))
+
+
+def patched(image: Array, area: Area, drawn: Callable[[], Array]) -> Array:
+    """The image with a part of it drawn anew."""
+    if area.empty:
+        return image
+    patched = image.copy()
+    area.of(patched)[:] = drawn()
+    return patched
+
+
+def _with_target(part: Part, name: str) -> Part:
+    """The part with one of its targets at weight 1."""
+    positions = part.positions.copy()
+    for target in part.targets:
+        if target.name == name:
+            positions[target.vertices] += target.offsets
+    return replace(part, positions=positions)
+
+
+def camera_of(scene: Scene, rest: Moment) -> Camera:
+    """The camera that looks at what expressions move."""
+    return orbit(_box(scene), screen=SCREEN, azimuth=rest.yaw + AWAY)
+
+
+def _box(scene: Scene) -> Array:
+    """The box [2, 3] about what expressions usually move, as the file stands."""
+    found = []
+    for part in scene.parts:
+        moved = np.zeros(len(part.positions), bool)
+        for target in part.targets:
+            lengths = np.linalg.norm(target.offsets, axis=1)
+            moved[target.vertices[lengths > MOVES * lengths.max(initial=0)]] = True
+        moved &= np.isin(np.arange(len(moved)), part.faces)
+        found.append(skinned(scene, part, scene.rest)[moved])
+    return np.percentile(np.concatenate(found), [100 - USUAL, USUAL], axis=0)
