@@ -10,7 +10,7 @@ from mua.errors import InputError
 
 # The extras of python/pyproject.toml, by the names under which their packages are imported.
 READING = ("DracoPy", "meshoptimizer", "opengl_basisu", "pygltflib", "pywt", "scipy", "ufbx", "xatlas")
-TRAINING = ("meshoptimizer", "moderngl", "pywt", "scipy", "torch", "trimesh", "warp", "xatlas")
+TRAINING = ("meshoptimizer", "moderngl", "pywt", "scipy", "threadpoolctl", "torch", "trimesh", "warp", "xatlas")
 VIEWING = (*READING, "glfw", "imageio_ffmpeg", "imgui_bundle", "rendercanvas", "wgpu")
 EXTRAS = {  # the smaller ones first: the first that brings a package is proposed
     "view": frozenset(VIEWING),

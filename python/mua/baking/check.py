@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 from PIL import Image
+from threadpoolctl import threadpool_limits
 
 from mua.arrays import Array
 from mua.baking.listener import Listener
@@ -30,7 +31,6 @@ from mua.pose.clip import Clip
 from mua.pose.encoding import RATE
 from mua.rig.character import Character
 from mua.teachers.simulated.still import StillTeacher
-from mua.training.blas_threads import one_blas_thread
 
 FAST = 1  # of a PNG's levels: a tenth larger than by the best, in a third of the time
 MADE = 30  # recorded frames whose range of motion is made where a character has no motion: all of its moves begin
@@ -57,7 +57,7 @@ def check(settings: BakeSettings, listener: Listener) -> Check:
     """
     require_writable(settings.output)
     listener.stage("character")
-    with one_blas_thread(), SourceProcess() as process:
+    with threadpool_limits(1, user_api="blas"), SourceProcess() as process:  # as in a bake
         character = load_baked_character(settings, read=process.begin)
         return _check(settings, character, listener, faces=process.images)
 

@@ -7,6 +7,7 @@ from functools import cache, partial
 
 import numpy as np
 import torch
+from threadpoolctl import threadpool_limits
 
 from mua.arrays import Array
 from mua.atlas.texel_density import describe_texels
@@ -38,7 +39,6 @@ from mua.rig.texel_binding import bind_texels
 from mua.teachers.simulated.still import StillTeacher
 from mua.teachers.simulated.teacher import SimulatedTeacher
 from mua.teachers.simulated.texels import SurfaceTexels
-from mua.training.blas_threads import one_blas_thread
 from mua.training.memory import release_memory, return_large_blocks
 
 # Steps of the fit, and training frames for each further one: less than a tenth of the time of a bake.
@@ -59,7 +59,8 @@ def bake(settings: BakeSettings, listener: Listener) -> Baked:
     with DirectoryLock(settings.work, name=f"--work {settings.work}"):
         if settings.teacher is not None or settings.training is not None:
             return bake_trained_teacher(settings, device, listener)
-        with ExitStack() as processes:
+        # numpy's matrix products are small, and threads of OpenBLAS wait for the next one with their cores busy
+        with threadpool_limits(1, user_api="blas"), ExitStack() as processes:
             return _bake(settings, device, listener, processes)
 
 
@@ -75,8 +76,7 @@ def _bake(settings: BakeSettings, device: torch.device, listener: Listener, proc
     listener.stage("character")
     if settings.character is None:  # else once its file is known to be sound
         start()
-    with one_blas_thread():
-        character = load_baked_character(settings, read=start)
+    character = load_baked_character(settings, read=start)
     clips, notes = clips_of(settings, character)
     clips, of_face = faced(character, clips, settings.face)
     for sentence in (*character.notes, describe_texels(character, settings.student.texels), *notes, *of_face):
@@ -93,9 +93,8 @@ def _bake(settings: BakeSettings, device: torch.device, listener: Listener, proc
 
     require_writable(settings.output)
     still = cache(partial(StillTeacher, character, texels=settings.student.texels))
-    with one_blas_thread():
-        corrections = _fitted(settings, character, still, planned, listener)
-        laid, fidelity = _compared(settings, character, clips, still, corrections, listener)
+    corrections = _fitted(settings, character, still, planned, listener)
+    laid, fidelity = _compared(settings, character, clips, still, corrections, listener)
     compared = [] if fidelity is None else worst_strips(fidelity, CELL)
     del still, fidelity
     character = replace(character, source=None)  # its textures may be large
