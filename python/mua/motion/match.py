@@ -108,7 +108,7 @@ def _placed(skeleton: Skeleton, found: Roles, poses: Array | None) -> dict[str, 
     sides = [placed[name].split()[0] == role.split()[0] for name, role in named.items() if " " in placed.get(name, "")]
     if not sides or not all(sides):
         return {}
-    missing = {role for limb in LIMBS if limb not in known for role in (*LIMBS[limb], *BEYOND[limb])}
+    missing = {role for limb in BEYOND.keys() - known for role in (*LIMBS[limb], *BEYOND[limb])}
     return {name: role for name, role in placed.items() if role in missing and name not in named}
 
 
