@@ -23,7 +23,7 @@ FACE_WEIGHT = (
 )
 FACE_DIRECTIONS = 14  # random directions that stand for all expressions' offsets, where there are any
 SKIN_BESIDE_FACE = 16  # dimensions of the space of skin weights beside these
-NO_ERROR_LIMIT = c_float(1e9)  # only the number of triangles ends the decimation
+LARGEST_ERROR = c_float(0.01)  # of the extent, several times a person's: where some parts cannot, none is to dissolve
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,7 +109,8 @@ def _decimate(
     for _ in range(ATTEMPTS):
         left = pairs[_collapse(index, positions, attributes, triangles=int(triangles))]
         count = len(np.unique(left[:, 0]))
-        if abs(count - vertices) <= CLOSE_ENOUGH * vertices:
+        torn = len(left) // 3 > (1 + CLOSE_ENOUGH) * triangles  # no more triangles can go
+        if torn or abs(count - vertices) <= CLOSE_ENOUGH * vertices:
             break
         triangles *= vertices / count
     faces, uv_faces = left.reshape(-1, 3, 2).astype(np.int32).transpose(2, 0, 1)
@@ -142,6 +143,6 @@ def _collapse(
         vertex_attributes_stride=c_size_t(attributes.strides[0]),
         attribute_count=c_size_t(attributes.shape[1]),
         target_index_count=c_size_t(3 * triangles),
-        target_error=NO_ERROR_LIMIT,
+        target_error=LARGEST_ERROR,
     )
     return left[:count]
