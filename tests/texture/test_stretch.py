@@ -71,7 +71,7 @@ def test_a_surfel_wider_than_the_sliver_it_lies_on_grows_by_what_the_sliver_open
         rotations=np.array([[1.0, 0, 0, 0]]),
         deviations=np.full((1, 2), deviation),
     )
-    moved = corners + [[0, 0, 0], [0, 0, 0], [0, opened, 0]]
+    moved = corners + np.array([[0, 0, 0], [0, 0, 0], [0, opened, 0]])
     (along,), (across,) = stretch(moved, np.zeros((6, 1)))
     assert abs(along) <= HOLD
     assert 0 <= deviation * np.expm1(across) <= opened
