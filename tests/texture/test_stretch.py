@@ -11,7 +11,7 @@ from mua import rotation
 from mua.rig.character import Mesh
 from mua.rig.texel_map import build_texel_map
 from mua.texture.footprints import TexelPoints
-from mua.texture.stretch import HOLD, SurfelStretch
+from mua.texture.stretch import HOLD, LONGEST, SurfelStretch
 from mua.texture.surfels import SurfaceFrames, rest_surfels
 
 SIZE = 61
@@ -75,6 +75,14 @@ def test_a_surfel_wider_than_the_sliver_it_lies_on_grows_by_what_the_sliver_open
     (along,), (across,) = stretch(moved, np.zeros((6, 1)))
     assert abs(along) <= HOLD
     assert 0 <= deviation * np.expm1(across) <= opened
+
+
+def test_no_surfel_spans_a_gap_that_opens_far_beyond_its_size() -> None:
+    """An armpit, whose skin opens tenfold from a few triangles: surfels as long would stand out of the body."""
+    mesh = tube(rings=8, sides=13).mesh
+    moved = mesh.vertices + (mesh.vertices[:, 1:2] > HEIGHT * 3.5 / 7) * [0, 20 * HEIGHT / 7, 0]
+    (_, along), _, _ = stretched(mesh, moved)
+    assert along.max() == pytest.approx(np.log(LONGEST))
 
 
 def test_a_surface_squeezed_to_nothing_keeps_finite_surfels() -> None:

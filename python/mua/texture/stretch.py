@@ -8,6 +8,7 @@ from mua.arrays import Array
 HOLD = float(np.log(1.3))  # how far a stretch that is smooth over the vertices may differ from that of the own triangle
 WIDTH = 2.0  # deviations, about the way from one surfel to the next: what of a surfel is to lie on its triangle
 SHORTEST = 0.05  # of its length at rest: a surfel on a triangle that is squeezed to nothing
+LONGEST = 5.0  # times its length at rest: on an armpit that opens tenfold, a flat surfel would stand out of the body
 
 
 class SurfelStretch:
@@ -55,9 +56,10 @@ class SurfelStretch:
         logs = []
         for axes, coordinates, share in zip(self._axes, self._coordinates, self._on_triangle, strict=True):
             smooth = _length(1 + np.einsum("kn,kn->n", axes, strain))
-            own = smooth + share * (_length(np.einsum("kn,kn->n", coordinates, metric)) - smooth)
+            own = _length(np.einsum("kn,kn->n", coordinates, metric))
+            own = np.minimum(own, smooth + share * (own - smooth))
             least = np.log(own) - HOLD
-            logs.append(np.clip(np.log(smooth), least, least + 2 * HOLD))
+            logs.append(np.clip(np.log(smooth), least, least + 2 * HOLD).clip(max=np.log(LONGEST)))
         return np.stack(logs)
 
 
