@@ -136,7 +136,7 @@ BEYOND = {
     for limb in LIMBS
     if limb != "spine"
 }
-END = re.compile(r"(end|nub|tip)[_\d]*$", re.IGNORECASE)  # joints that only mark where a bone ends; Sketchfab numbers all
+END = re.compile(r"(end|nub|tip)[_\d]*$", re.IGNORECASE)  # joints that only mark where a bone ends
 SAME_RIG = 0.8  # of the target's joints: with as many equal names, motion and character are of one kind of rig
 
 
