@@ -120,7 +120,7 @@ def test_a_mass_of_hair_on_cards_leaves_the_face_its_texels() -> None:
         moved_by = np.where(figure.vertices[:, :1] > 1.5, 1, 0)
         figure = replace(
             figure,
-            materials=tuple(replace(one, alpha_mode="cut") for one in figure.materials),
+            materials=tuple(replace(one, alpha_mode="mask") for one in figure.materials),
             skeleton=upright(("Hips", "Head"), (-1, 0)),
             skin_indices=np.broadcast_to(moved_by, figure.skin_indices.shape).astype(figure.skin_indices.dtype),
         )
