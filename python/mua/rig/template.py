@@ -23,7 +23,8 @@ FACE_WEIGHT = (
 )
 FACE_DIRECTIONS = 14  # random directions that stand for all expressions' offsets, where there are any
 SKIN_BESIDE_FACE = 16  # dimensions of the space of skin weights beside these
-LARGEST_ERROR = c_float(0.01)  # of the extent, several times a person's: where some parts cannot, none is to dissolve
+NO_LIMIT = 1e9  # of errors: only the number of triangles ends the decimation
+LARGEST_ERROR = 0.01  # of the extent, several times a person's: where some parts cannot, others are not to dissolve
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,9 +109,11 @@ def _decimate(
     triangles = len(mesh.faces) * vertices / len(mesh.vertices)
     for _ in range(ATTEMPTS):
         left = pairs[_collapse(index, positions, attributes, triangles=int(triangles))]
+        if len(left) > (1 + CLOSE_ENOUGH) * 3 * triangles:  # no more can go
+            left = pairs[_collapse(index, positions, attributes, triangles=int(triangles), error=LARGEST_ERROR)]
+            break
         count = len(np.unique(left[:, 0]))
-        torn = len(left) // 3 > (1 + CLOSE_ENOUGH) * triangles  # no more triangles can go
-        if torn or abs(count - vertices) <= CLOSE_ENOUGH * vertices:
+        if abs(count - vertices) <= CLOSE_ENOUGH * vertices:
             break
         triangles *= vertices / count
     faces, uv_faces = left.reshape(-1, 3, 2).astype(np.int32).transpose(2, 0, 1)
@@ -125,6 +128,7 @@ def _collapse(
     attributes: Array,  # [P, n] float32, in units of the mesh's largest extent
     *,
     triangles: int,
+    error: float = NO_LIMIT,  # in these units
 ) -> Array:
     """Indices [3 n] into the same vertices, of about `triangles` triangles.
 
@@ -143,6 +147,6 @@ def _collapse(
         vertex_attributes_stride=c_size_t(attributes.strides[0]),
         attribute_count=c_size_t(attributes.shape[1]),
         target_index_count=c_size_t(3 * triangles),
-        target_error=LARGEST_ERROR,
+        target_error=c_float(error),
     )
     return left[:count]
