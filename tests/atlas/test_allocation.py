@@ -106,3 +106,24 @@ def test_a_head_of_one_colour_leaves_texels_to_the_body() -> None:
         )
         shares.append(texels_of(figure, head) / texels_of(figure, np.ones(len(head), bool)))
     assert shares[1] > 1.1 * shares[0]
+
+
+def test_a_mass_of_hair_on_cards_leaves_the_face_its_texels() -> None:
+    """A head with as much hair as it has body: where that is no mass of see-through cards, it is the head itself."""
+    texels = []
+    for alpha in (255, 120):
+        hair = NOISE.copy()
+        hair[:32, :, 3] = alpha
+        places = (2, -6, -4, -2, 0, 4, 6, 8, 10)  # the face, the body, the hair
+        images = (plain(190, 140, 120, 255),) * 5 + (hair,) * 4
+        figure = surfaces_of(*(patch(8, at=at, uv=WHOLE) for at in places), images=images)
+        moved_by = np.where(figure.vertices[:, :1] > 1.5, 1, 0)
+        figure = replace(
+            figure,
+            materials=tuple(replace(one, alpha_mode="mask") for one in figure.materials),
+            skeleton=upright(("Hips", "Head"), (-1, 0)),
+            skin_indices=np.broadcast_to(moved_by, figure.skin_indices.shape).astype(figure.skin_indices.dtype),
+        )
+        across = middles(figure)[:, 0]
+        texels.append(texels_of(figure, (across > 1.5) & (across < 3.5)))
+    assert texels[1] > 1.3 * texels[0]

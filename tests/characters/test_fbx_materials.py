@@ -58,6 +58,11 @@ def test_a_lost_texture_is_noted_and_the_colour_drawn(tmp_path: Path) -> None:
     assert found.image[0, 0].tolist() == [128, 128, 128, 255]
 
 
+def test_a_lost_texture_without_a_path_is_noted_by_its_own_name(tmp_path: Path) -> None:
+    _, notes = material(textured("."), tmp_path)
+    assert any(note.endswith("drawn: picture.") for note in notes), notes
+
+
 def test_a_texture_that_is_no_picture_is_as_a_lost_one(tmp_path: Path) -> None:
     _, notes = material(textured(content=b"no picture"), tmp_path)
     assert any("Cloth_01.png" in note for note in notes)

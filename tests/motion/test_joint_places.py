@@ -50,6 +50,16 @@ def test_motion_goes_onto_joints_recognised_by_position_and_says_so() -> None:
     assert any("recognised by their positions" in note and "left thigh" in note for note in notes)
 
 
+def test_legs_whose_names_say_nothing_are_recognised_beside_arms_that_are_named() -> None:
+    whole = person()
+    legs = ("UpLeg", "Leg", "Foot", "ToeBase")
+    called = {f"{side}{part}": f"{side[0]}_Joint_{i}" for side in ("Left", "Right") for i, part in enumerate(legs)}
+    mannequin = replace(whole, names=tuple(called.get(name, name) for name in whole.names))
+    matches = match_joints(whole, mannequin)
+    assert matches.roles == match_joints(whole, whole).roles
+    assert any("recognised by their positions" in note and "left shin" in note for note in matches.notes)
+
+
 def test_asks_names_first() -> None:
     assert match_joints(person(), person()).notes == ()
 

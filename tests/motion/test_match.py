@@ -131,8 +131,10 @@ def block_figure(*more: tuple[str, str]) -> Skeleton:
     return upright(names, parents, np.ones((len(names), 3)), root=1)
 
 
-def test_limbs_of_one_bone_follow_the_upper_one() -> None:
-    block = block_figure()
+@pytest.mark.parametrize("end", ["", "_end", "_end_07"])  # none, Blender's, and Sketchfab's with a number after it
+def test_limbs_of_one_bone_follow_the_upper_one(end: str) -> None:
+    limbs = ("Arm_L", "Arm_R", "Leg_L", "Leg_R") if end else ()
+    block = block_figure(*((f"{limb}{end}", limb) for limb in limbs))
     matches = match_joints(person(), block)
     require_limbs(person(), block, matches)
     moved = {block.names[joint]: person().names[first] for joint, (first, _) in matches.chains.items()}

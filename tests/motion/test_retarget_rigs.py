@@ -6,6 +6,7 @@ import numpy as np
 from people import (
     ANGLE_BOUND,
     POSITION_BOUND,
+    hung_on_the_spine,
     person,
     random_clip,
     retarget,
@@ -54,6 +55,16 @@ def test_parts_of_the_trunk_that_hang_on_the_root_go_with_the_body() -> None:
     turned, at = (np.stack(parts) for parts in zip(*map(world, (apart, whole), clips), strict=True))
     np.testing.assert_allclose(at[0], at[1], atol=POSITION_BOUND)
     np.testing.assert_allclose(np.abs(np.sum(turned[0] * turned[1], axis=-1)), 1, atol=ANGLE_BOUND)
+
+
+def test_a_body_whose_hips_hang_on_its_spine_goes_as_a_whole() -> None:
+    """Artists' mannequins are rooted in the belly: trunk and legs must not part where the motion goes."""
+    body, plain = person(), person(size=0.8)
+    source, target = SourceMotion(body, walk(body)), hung_on_the_spine(plain)
+    found, wanted = (world(figure, retarget(source, figure)[0])[1] for figure in (target, plain))
+    np.testing.assert_allclose(
+        found, wanted[:, [plain.names.index(name) for name in target.names]], atol=POSITION_BOUND
+    )
 
 
 def test_says_which_limbs_of_the_character_nothing_moves() -> None:

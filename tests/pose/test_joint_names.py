@@ -64,6 +64,8 @@ ARM = ("left shoulder", "left upper_arm", "left forearm", "left hand")
         (("shoulder.l", "arm_stretch.l", "forearm_stretch.l", "hand.l"), ARM),
         (("J_L_Clavicle", "J_L_Shoulder", "J_L_Elbow", "J_L_Hand"), ARM),
         (("Armature_LeftUpLeg", "Armature_LeftLeg", "Armature_LeftFoot", "Armature_LeftToeBase"), LEG),
+        (("def_l_thigh", "def_l_knee", "def_l_ankle", "def_l_ball"), LEG),
+        (("char:def_l_clav", "char:def_l_shoulder", "char:def_l_elbow", "char:def_l_wrist"), ARM),
         (("左足", "左ひざ", "左足首", "左つま先"), LEG),
         (("左肩", "左腕", "左ひじ", "左手首"), ARM),
         (("左大腿", "左小腿", "左脚", "左脚趾"), LEG),
@@ -107,10 +109,18 @@ def test_does_not_guess(name: str) -> None:
         ("下半身", "上半身２", "頭"),
         ("pelvis", "stomach", "head"),
         ("root.x", "spine_01.x", "head.x"),
+        ("def_c_hip", "def_c_spineA", "def_c_headA"),
     ],
 )
 def test_knows_trunks_by_many_names(names: tuple[str, ...]) -> None:
     assert roles(chain(*names)) | {"hips": (0,)} == {"hips": (0,), "spine": (1,), "head": (2,)}
+
+
+def test_the_last_joint_of_a_neck_is_the_head_where_none_is_called_so() -> None:
+    found = roles(chain("def_c_hip", "def_c_spineA", "def_c_spineB", "def_c_neckA", "def_c_neckB", "def_c_jaw"))
+    assert (found["spine"], found["neck"], found["head"]) == ((1, 2), (3,), (4,))
+    assert roles(chain("Hips", "Neck1", "Neck2", "Head"))["neck"] == (1, 2)
+    assert "head" not in roles(chain("Hips", "Spine", "Neck"))
 
 
 def test_takes_what_lies_between_hips_and_arms_for_the_spine_whatever_its_name() -> None:
@@ -144,6 +154,7 @@ def test_knows_fingers() -> None:
         ("LeftThumbProximal", "LeftThumbIntermediate", "LeftThumbDistal"),
         ("Bip01 L Finger0", "Bip01 L Finger01", "Bip01 L Finger02"),
         ("finger1-1.L", "finger1-2.L", "finger1-3.L"),
+        ("def_l_fngThumbA", "def_l_fngThumbB", "def_l_fngThumbC"),
     ):
         assert roles(chain("Hips", "LeftHand", *names))["left thumb"] == (2, 3, 4)
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from people import still
+from people import person, still, upright
 from shared_data import SharedData
 
 from mua import rotation
@@ -20,6 +20,7 @@ from mua.pose.skeleton import Pose
 from mua.recording import LikelyMistake, Recording, TeacherWriter
 from mua.recording.plausible import Plausible, rig_findings
 from mua.recording.plausible.fit import explain, unit_of
+from mua.recording.plausible.pose import Poses
 from mua.rig.character import Character
 from mua.rig.rig import Rig
 from mua.teacher import TeacherFrame
@@ -227,6 +228,20 @@ def test_world_rotations_are_recognised(rig: Rig, frames: list[TeacherFrame], tm
     world, _ = rig.skeleton.world(pose.rotations, pose.translations)
     with pytest.raises(InputError, match=r"are these rotations in the world\? local ones"):
         add(tmp_path, rig, replace(frames[0], pose=Pose(world, pose.translations)))
+
+
+def test_controls_beside_the_body_go_with_it_where_it_turns_round() -> None:
+    """Rigs of games have targets for knees and hands on the root, far before the body: they move, and no bone grows."""
+    body = person()
+    _, at = body.world(body.bind_rotations, body.bind_translations)
+    names = ("Root", *body.names, *(f"IK_{name}" for name in body.names))
+    offsets = np.concatenate([[[0, 0, 0]], body.bind_translations, at + np.array([0, 0, 5])])
+    rig = upright(names, [-1, *(body.parents + 1), *(0 for _ in body.names)], offsets, root=1)
+    round_about = rig.bind_translations.copy()
+    round_about[len(body.names) + 1 :] *= [-1, 1, -1]
+    assert list(Poses(rig, 1.7)(Pose(rig.bind_rotations, round_about))) == []
+    grown = rig.bind_translations * np.where(np.arange(len(names)) < 2, 1, 1000)[:, None]
+    assert len(list(Poses(rig, 1.7)(Pose(rig.bind_rotations, grown)))) == 1
 
 
 def image_of(rig: Rig, texture: Array, *, elsewhere: float) -> Array:

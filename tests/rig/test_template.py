@@ -138,6 +138,19 @@ def test_small_parts_survive() -> None:
     assert np.isin(dense.texels, build_texel_map(template.mesh, 128).texels).mean() > 0.98
 
 
+def test_a_part_that_cannot_be_simplified_does_not_dissolve_the_others() -> None:
+    """Where every triangle is a chart of its own, no edge can be collapsed: its vertices are more than are wanted."""
+    torn = sphere(41, 61, at=(0, 0, 0), radius=1.0, square=np.array([0.0, 0.0, 0.4]))
+    own = np.arange(3 * len(torn.faces), dtype=np.int32).reshape(-1, 3)
+    torn = Mesh(vertices=torn.vertices, faces=torn.faces, uv=torn.uv[torn.uv_faces.ravel()], uv_faces=own)
+    cap = sphere(21, 31, at=(0, 1.5, 0), radius=0.6, square=np.array([0.5, 0.5, 0.4]))
+    character = character_of(torn, cap)
+    template = make_template(character, vertices=400)
+    assert len(template.mesh.vertices) < len(character.mesh.vertices)
+    kept = build_texel_map(template.mesh, 128).texels
+    assert np.isin(build_texel_map(character_of(cap).mesh, 128).texels, kept).mean() > 0.9
+
+
 def test_build_rig_maps_texels_of_the_template() -> None:
     character = one_sphere()
     rig, source = build_rig(character, texels=33, template_vertices=400)

@@ -11,7 +11,7 @@ from mua import rotation
 from mua.rig.character import Mesh
 from mua.rig.texel_map import build_texel_map
 from mua.texture.footprints import TexelPoints
-from mua.texture.stretch import HOLD, SurfelStretch
+from mua.texture.stretch import HOLD, LONGEST, SurfelStretch
 from mua.texture.surfels import SurfaceFrames, rest_surfels
 
 SIZE = 61
@@ -24,7 +24,13 @@ def stretched(mesh: Mesh, moved: np.ndarray) -> tuple[np.ndarray, np.ndarray, np
     found = rest_surfels(mesh, size=SIZE, **at)
     _, strain = SurfaceFrames(mesh.vertices, mesh.faces)(moved)
     at_texels = np.einsum("nk,nkc->cn", texels.barycentrics, strain[mesh.faces[texels.triangles]])
-    stretch = SurfelStretch(mesh.vertices, mesh.faces, triangles=texels.triangles, rotations=found.rotations)
+    stretch = SurfelStretch(
+        mesh.vertices,
+        mesh.faces,
+        triangles=texels.triangles,
+        rotations=found.rotations,
+        deviations=np.exp(found.log_scales[:, :2]),
+    )
     grown = stretch(moved, at_texels)
     scales = np.exp(found.log_scales + np.concatenate([grown, np.zeros((1, len(texels.texels)))]).T)
     return grown, TexelPoints(Mesh(moved, mesh.faces, mesh.uv, mesh.uv_faces), SIZE, **at).places, scales
@@ -53,6 +59,30 @@ def test_one_ring_pulled_apart_stays_closed_and_its_neighbours_small() -> None:
     a, b, c = moved[mesh.faces].swapaxes(0, 1)
     middle = ((a + b + c) / 3)[np.ptp(moved[mesh.faces][:, :, 1], axis=1) > HEIGHT / 2]
     assert coverage(middle, places, rotation.from_matrix(frames), scales).min() > 0.9
+
+
+def test_a_surfel_wider_than_the_sliver_it_lies_on_grows_by_what_the_sliver_opens() -> None:
+    thin, opened, deviation = 1e-4, 0.03, 0.01  # metres
+    corners = np.array([[0.0, 0, 0], [1, 0, 0], [0.5, thin, 0]])
+    stretch = SurfelStretch(
+        corners,
+        np.array([[0, 1, 2]]),
+        triangles=np.array([0]),
+        rotations=np.array([[1.0, 0, 0, 0]]),
+        deviations=np.full((1, 2), deviation),
+    )
+    moved = corners + np.array([[0, 0, 0], [0, 0, 0], [0, opened, 0]])
+    (along,), (across,) = stretch(moved, np.zeros((6, 1)))
+    assert abs(along) <= HOLD
+    assert 0 <= deviation * np.expm1(across) <= opened
+
+
+def test_no_surfel_spans_a_gap_that_opens_far_beyond_its_size() -> None:
+    """An armpit, whose skin opens tenfold from a few triangles: surfels as long would stand out of the body."""
+    mesh = tube(rings=8, sides=13).mesh
+    moved = mesh.vertices + (mesh.vertices[:, 1:2] > HEIGHT * 3.5 / 7) * [0, 20 * HEIGHT / 7, 0]
+    (_, along), _, _ = stretched(mesh, moved)
+    assert along.max() == pytest.approx(np.log(LONGEST))
 
 
 def test_a_surface_squeezed_to_nothing_keeps_finite_surfels() -> None:

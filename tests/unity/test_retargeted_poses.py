@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from csharp import PROGRAMS, RUNTIME, CSharp, by_name
 from named_figures import written_names
-from people import moving, on_thick_soles, person, random_clip, upright, walk, with_fingers
+from people import hung_on_the_spine, moving, on_thick_soles, person, random_clip, upright, walk, with_fingers
 from retargeted import SECONDS, expected
 from shared_data import SharedData
 
@@ -118,6 +118,7 @@ PAIRS = {
     "larger, in T-pose, fingers": (with_fingers(person(arms_down=50)), with_fingers(person(size=1.5))),
     "at rest about the hips": (about_the_hips(person(size=1.2)), person(size=0.8, axes=4)),
     "about the hips, onto thick soles": (about_the_hips(person()), on_thick_soles(person(size=0.6))),
+    "hips below the spine": (person(size=1.2), hung_on_the_spine(person(size=0.8))),
     "legs apart, facing back": (turned_about(person(legs_apart=15), 180), person(axes=3)),
 }
 

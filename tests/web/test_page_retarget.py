@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from gltf_files import Glb, animate
 from named_figures import written_names
-from people import lying, moving, on_thick_soles, person
+from people import hung_on_the_spine, lying, moving, on_thick_soles, person, walk
 from scipy.spatial.transform import Rotation
 from shared_data import SharedData
 from web.test_modules import node, pytestmark  # noqa: F401  needs Node
@@ -204,6 +204,13 @@ def test_a_clip_has_the_rate_of_the_avatar(tmp_path: Path, rate: float) -> None:
     path = animated(person(), moving(person())).save(tmp_path / "moves.glb")
     [loaded] = load_motions(path, skeleton, mapping=None, rate=rate, feet="keep")
     assert_same(browser_clip(tmp_path, skeleton, path, rate=rate), loaded.clip)
+
+
+def test_a_body_whose_hips_hang_on_its_spine_goes_as_a_whole(tmp_path: Path) -> None:
+    source, target = person(size=1.2), hung_on_the_spine(person(size=0.8))
+    path = animated(source, walk(source)).save(tmp_path / "walk.glb")
+    [loaded] = load_motions(path, target, mapping=None, rate=RATE, feet="keep")
+    assert_same(browser_clip(tmp_path, target, path), loaded.clip)
 
 
 def test_a_mapping_names_what_names_do_not_tell(tmp_path: Path) -> None:

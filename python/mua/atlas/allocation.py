@@ -11,6 +11,7 @@ import numpy as np
 from scipy.sparse import coo_matrix
 
 from mua.arrays import Array
+from mua.atlas.detail import by_default
 from mua.atlas.surface_samples import spread_samples, texture_losses
 from mua.atlas.surfaces import Surfaces
 from mua.atlas.visibility import seen_shares
@@ -62,11 +63,26 @@ def wanted_fineness(
     errors = _smooth((_finely(losses) + SHAPE * WIDTHS) * weight[:, None], surface, surfaces.faces)
     # What lies just behind a face is fine as well: wide splats of the inside of a mouth would shine through the lips.
     least = (1 + (FACE - 1) * nearness) * np.where(seen < HIDDEN, HIDDEN_FINE, 1) * larger
-    finer = _within_parts(errors, surface, surfaces.faces, least=least, parts=parts)
     head = parts == BODY_PARTS.index("head")
+    least[head] *= _taken_by_cards(surfaces, surface, head)
+    finer = _within_parts(errors, surface, surfaces.faces, least=least, parts=parts)
     if "head" not in chosen and surface @ (head * losses[:, OCTAVES == 0][:, 0]) <= PLAIN * surface[head].sum():
         finer[head] *= PLAIN_FINE
     return finer
+
+
+def _taken_by_cards(
+    surfaces: Surfaces,
+    surface: Array,  # [F]
+    head: Array,  # [F] bool
+) -> float:
+    """How much finer in length a head would be drawn without its transparent surface: cards of hair, in many layers."""
+    clear = np.array([m.alpha_mode != "opaque" and m.image[..., 3].min() < 255 for m in surfaces.materials], bool)
+    solid = np.where(clear[surfaces.face_material], 0, surface)
+    if not surface[head].any() or not solid[head].any():
+        return 1.0
+    with_cards, without = (by_default("head", float(area[head].sum() / area.sum())) for area in (surface, solid))
+    return max(without / with_cards, 1.0)
 
 
 def _within_parts(

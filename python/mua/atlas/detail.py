@@ -47,9 +47,9 @@ def factors(
     """How much finer in length [F] each triangle is to be drawn, and a sentence for each part that is not there."""
     area = np.bincount(parts, surface, minlength=len(BODY_PARTS))
     by_part = np.ones(len(BODY_PARTS))
-    for part, factor in BY_DEFAULT.items():
+    for part in BY_DEFAULT:
         k = BODY_PARTS.index(part)
-        by_part[k] = min(factor, _largest(area[k] / area.sum(), LARGEST_SHARES[part])) if area[k] else 1.0
+        by_part[k] = by_default(part, area[k] / area.sum()) if area[k] else 1.0
     absent = []
     for part, factor in detail.items():
         k = BODY_PARTS.index(part)
@@ -57,6 +57,13 @@ def factors(
         if area[k] == 0:
             absent.append(f"--detail {part}={factor:g} changes nothing: no joint of the {part} was recognised.")
     return by_part[parts], tuple(absent)
+
+
+def by_default(part: BodyPart, share: float) -> float:
+    """How much finer in length a part that has this share of the surface is drawn where nobody asks for it."""
+    most = LARGEST_SHARES[part]
+    largest = np.sqrt(most / (1 - most) * (1 - share) / share)  # then it takes the share `most` of the texels
+    return float(min(BY_DEFAULT[part], max(largest, 1.0)))
 
 
 def split_by_factor(
@@ -88,11 +95,6 @@ def _pieces(nodes: Array, corners: Array, labels: Array) -> Array:
 
     rows = np.column_stack([np.repeat(labels, 3, axis=0), nodes.ravel()])
     return find_charts(unique_rows(rows)[2].reshape(-1, 3), corners)
-
-
-def _largest(share: float, most: float) -> float:
-    """The factor at which a part with this share of the surface takes the share `most` of the texels; at least 1."""
-    return float(max(np.sqrt(most / (1 - most) * (1 - share) / share), 1.0))
 
 
 def _listed() -> str:

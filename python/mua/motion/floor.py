@@ -114,9 +114,10 @@ def _pace(rest: Rest, at: Array, source_at: Array, path: Array, *, rate: float, 
 
 
 def _mover(rest: Rest) -> int:
-    """The joint whose translation moves the whole body: the skeleton's root, or hips that carry it too."""
-    root, hips = rest.target.root, rest.matches.roles["hips"][0]
-    return hips if hips in rest.target.ancestors(root) else root
+    """The joint whose translation moves the whole body: the skeleton's root, or hips or a spine that carry it too."""
+    above, roles = rest.target.ancestors(rest.target.root), rest.matches.roles
+    trunk = (*roles["hips"], *roles.get("spine", ()))
+    return min((joint for joint in trunk if joint in above), default=rest.target.root)
 
 
 def attached(rest: Rest, rotations: Array, translations: Array) -> Array:

@@ -108,7 +108,7 @@ def _placed(skeleton: Skeleton, found: Roles, poses: Array | None) -> dict[str, 
     sides = [placed[name].split()[0] == role.split()[0] for name, role in named.items() if " " in placed.get(name, "")]
     if not sides or not all(sides):
         return {}
-    missing = {role for limb in LIMBS if limb not in known for role in (*LIMBS[limb], *BEYOND[limb])}
+    missing = {role for limb in BEYOND.keys() - known for role in (*LIMBS[limb], *BEYOND[limb])}
     return {name: role for name, role in placed.items() if role in missing and name not in named}
 
 
@@ -136,7 +136,7 @@ BEYOND = {
     for limb in LIMBS
     if limb != "spine"
 }
-END = re.compile(r"(end|nub|tip)$", re.IGNORECASE)  # of joints that only mark where a bone ends
+END = re.compile(r"(end|nub|tip)[_\d]*$", re.IGNORECASE)  # joints that only mark where a bone ends
 SAME_RIG = 0.8  # of the target's joints: with as many equal names, motion and character are of one kind of rig
 
 

@@ -54,7 +54,7 @@ _CENTRAL = {
     "head": ("head", "skull"),
 }
 _SIDED = {
-    "collar": ("collar", "clavicle", "scapula", "collarbone"),
+    "collar": ("collar", "clavicle", "clav", "scapula", "collarbone"),
     "shoulder": ("shoulder",),
     "upper_arm": ("arm", "upperarm", "uparm", "uarm", "humerus", "shldr", "bicep"),
     "forearm": ("forearm", "lowerarm", "lowarm", "loarm", "farm", "radius", "elbow"),
@@ -66,23 +66,18 @@ _SIDED = {
     "foot": ("foot",),
     "toe": ("toe", "toes", "toebase", "ball"),
 } | {
-    part: tuple(f"{before}{name}{segment}" for name in names for before in ("", "hand", "f") for segment in _SEGMENTS)
+    part: tuple(
+        f"{before}{name}{segment}" for name in names for before in ("", "hand", "f", "fng") for segment in _SEGMENTS
+    )
     for part, names in _FINGER_NAMES.items()
 }
 CENTRAL_PART = {name: part for part, names in _CENTRAL.items() for name in names} | FOREIGN_CENTRAL
 SIDED_PART = {name: part for part, names in _SIDED.items() for name in names} | FOREIGN_SIDED
 SIDE = {"left": "left", "l": "left", "right": "right", "r": "right"}
-NO_PART = {
-    "bind",
-    "jnt",
-    "joint",
-    "bone",
-    "bend",
-    "stretch",
-    "m",
-    "c",
-    "x",
-}  # words that say nothing about where a joint is
+NO_PART = {  # words that say nothing about where a joint is; a letter may count, as in spineA, spineB
+    *("bind", "jnt", "joint", "bone", "bend", "stretch", "m", "x"),
+    *"abcd",
+}
 _BELOW = {"upper_arm": "forearm", "forearm": "hand", "thigh": "shin", "shin": "foot"}
 
 NAMESPACE = re.compile(r"^.*[:|]")
@@ -274,8 +269,11 @@ def _settle_trunk(skeleton: Skeleton, chains: Roles) -> None:
     reach = set.union(*(set(skeleton.ancestors(joint)) for joint in arms)) if arms else set(spine)
     beyond = tuple(joint for joint in spine if joint not in reach) if reach & set(spine) else ()
     if len(beyond) > 1 and "neck" not in chains and "head" not in chains:
-        chains["neck"], chains["head"] = beyond[:-1], beyond[-1:]
+        chains["neck"] = beyond
         spine = tuple(joint for joint in spine if joint not in beyond)
+    neck = chains.get("neck", ())
+    if len(neck) > 1 and "head" not in chains:
+        chains["neck"], chains["head"] = neck[:-1], neck[-1:]
     spine = spine or _unnamed_spine(skeleton, chains, arms)
     if spine:
         chains["spine"] = spine

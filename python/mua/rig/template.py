@@ -23,7 +23,8 @@ FACE_WEIGHT = (
 )
 FACE_DIRECTIONS = 14  # random directions that stand for all expressions' offsets, where there are any
 SKIN_BESIDE_FACE = 16  # dimensions of the space of skin weights beside these
-NO_ERROR_LIMIT = c_float(1e9)  # only the number of triangles ends the decimation
+NO_LIMIT = 1e9  # of errors: only the number of triangles ends the decimation
+LARGEST_ERROR = 0.01  # of the extent, several times a person's: where some parts cannot, others are not to dissolve
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,6 +109,9 @@ def _decimate(
     triangles = len(mesh.faces) * vertices / len(mesh.vertices)
     for _ in range(ATTEMPTS):
         left = pairs[_collapse(index, positions, attributes, triangles=int(triangles))]
+        if len(left) > (1 + CLOSE_ENOUGH) * 3 * triangles:  # no more can go
+            left = pairs[_collapse(index, positions, attributes, triangles=int(triangles), error=LARGEST_ERROR)]
+            break
         count = len(np.unique(left[:, 0]))
         if abs(count - vertices) <= CLOSE_ENOUGH * vertices:
             break
@@ -124,6 +128,7 @@ def _collapse(
     attributes: Array,  # [P, n] float32, in units of the mesh's largest extent
     *,
     triangles: int,
+    error: float = NO_LIMIT,  # in these units
 ) -> Array:
     """Indices [3 n] into the same vertices, of about `triangles` triangles.
 
@@ -142,6 +147,6 @@ def _collapse(
         vertex_attributes_stride=c_size_t(attributes.strides[0]),
         attribute_count=c_size_t(attributes.shape[1]),
         target_index_count=c_size_t(3 * triangles),
-        target_error=NO_ERROR_LIMIT,
+        target_error=c_float(error),
     )
     return left[:count]

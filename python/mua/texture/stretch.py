@@ -6,7 +6,9 @@ from mua import rotation
 from mua.arrays import Array
 
 HOLD = float(np.log(1.3))  # how far a stretch that is smooth over the vertices may differ from that of the own triangle
+WIDTH = 2.0  # deviations, about the way from one surfel to the next: what of a surfel is to lie on its triangle
 SHORTEST = 0.05  # of its length at rest: a surfel on a triangle that is squeezed to nothing
+LONGEST = 5.0  # times its length at rest: on an armpit that opens tenfold, a flat surfel would stand out of the body
 
 
 class SurfelStretch:
@@ -14,7 +16,8 @@ class SurfelStretch:
 
     It is taken from the strain about the vertices, which runs smoothly from texel to texel, and held within a factor
     of that of the surfel's own triangle: where one ring of triangles alone is pulled apart, its surfels still reach
-    one another, and those beside it stay as they are.
+    one another, and those beside it stay as they are. Of a surfel that is wider than its triangle, only as much
+    follows the triangle as lies on it: a sliver that opens to thirty times its width takes no surfel along.
     """
 
     def __init__(
@@ -24,6 +27,7 @@ class SurfelStretch:
         *,
         triangles: Array,  # [N] into the faces
         rotations: Array,  # [N, 4] of the surfels at rest
+        deviations: Array,  # [N, 2] of the surfels at rest along x and y, metres
     ) -> None:
         axes = rotation.to_matrix(rotations)
         used, of_texel = np.unique(triangles, return_inverse=True)
@@ -33,6 +37,9 @@ class SurfelStretch:
         coordinates = inverses[of_texel] @ axes[:, :, :2]  # of the axes' shadows on the triangle
         length = np.linalg.norm(edges[of_texel] @ coordinates, axis=1, keepdims=True)
         coordinates /= np.where(length > 0, length, np.inf)
+        u, v = coordinates.swapaxes(0, 1)
+        across = np.maximum(np.maximum(np.abs(u), np.abs(v)), np.abs(u + v))  # of the triangles that a metre crosses
+        self._on_triangle = np.ascontiguousarray(1 / np.maximum(WIDTH * deviations * across, 1).T)  # shares of x and y
         self._faces, self._triangles = faces, triangles
         self._axes = [_squares(*(axes[:, i, k] for i in range(3))) for k in (0, 1)]
         self._coordinates = [_squares(*(coordinates[:, i, k] for i in (0, 1))) for k in (0, 1)]
@@ -47,10 +54,12 @@ class SurfelStretch:
         e, f = b - a, c - a
         metric = np.stack([np.sum(p * q, axis=0) for p, q in ((e, e), (f, f), (e, f))])[:, self._triangles]
         logs = []
-        for axes, coordinates in zip(self._axes, self._coordinates, strict=True):
-            own = _log_length(np.einsum("kn,kn->n", coordinates, metric))
-            smooth = _log_length(1 + np.einsum("kn,kn->n", axes, strain))
-            logs.append(np.clip(smooth, own - HOLD, own + HOLD))
+        for axes, coordinates, share in zip(self._axes, self._coordinates, self._on_triangle, strict=True):
+            smooth = _length(1 + np.einsum("kn,kn->n", axes, strain))
+            own = _length(np.einsum("kn,kn->n", coordinates, metric))
+            own = np.minimum(own, smooth + share * (own - smooth))
+            least = np.log(own) - HOLD
+            logs.append(np.clip(np.log(smooth), least, least + 2 * HOLD).clip(max=np.log(LONGEST)))
         return np.stack(logs)
 
 
@@ -61,5 +70,5 @@ def _squares(*components: Array) -> Array:
     return np.stack([x * x for x in components] + halves)
 
 
-def _log_length(square: Array) -> Array:
-    return np.asarray(0.5 * np.log(np.maximum(square, SHORTEST**2)))
+def _length(square: Array) -> Array:
+    return np.sqrt(np.maximum(square, SHORTEST**2))

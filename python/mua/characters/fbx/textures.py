@@ -28,9 +28,12 @@ def read_picture(texture: Any, path: Path) -> Array | None:
 
 
 def file_name(texture: Any) -> str:
-    """The last part of a texture's path, as any system writes paths."""
-    names = [get(texture, name) for name in ("relative_filename", "filename", "absolute_filename")]
-    return next((PureWindowsPath(name).name for name in names if name), str(get(texture, "name")))
+    """The last part of a texture's path, as any system writes paths; the texture's own name where it has none.
+
+    Blender writes "." for a picture that was packed into its own file.
+    """
+    paths = (get(texture, name) for name in ("relative_filename", "filename", "absolute_filename"))
+    return PureWindowsPath(next(filter(None, paths), "")).name or str(get(texture, "name"))
 
 
 def _contents(texture: Any, path: Path) -> Iterator[bytes]:

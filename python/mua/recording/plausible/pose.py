@@ -29,7 +29,10 @@ class Poses:
         self._skeleton, self._reach = skeleton, max(size, PERSON)
         self._path = [*reversed(skeleton.ancestors(skeleton.root)), skeleton.root]
         lengths = np.linalg.norm(skeleton.bind_translations, axis=1)
-        self._bones = np.array([j for j in range(len(lengths)) if j not in self._path and lengths[j] > 0], dtype=int)
+        on_body = (
+            skeleton.root in skeleton.ancestors(joint) for joint in range(len(lengths))
+        )  # controls stand beside it
+        self._bones = np.flatnonzero((lengths > 0) & np.fromiter(on_body, bool, len(lengths)))
         self._place = self._root(skeleton.bind_pose)
 
     def __call__(self, pose: Pose) -> Iterator[Finding]:

@@ -59,8 +59,8 @@ class SurfaceTexels:
                 wanted=wanted.at(texels.texels),
             )
         relief += surfels.aside
-        deviations = np.exp(surfels.log_scales[:, :2]).min(axis=1)
-        below = depths(self._dense @ mesh.vertices, normals=surfels.normals, deviations=deviations)
+        deviations = np.exp(surfels.log_scales[:, :2])
+        below = depths(self._dense @ mesh.vertices, normals=surfels.normals, deviations=deviations.min(axis=1))
         relief -= below[:, None] * surfels.normals
         at_home = _at_home(uv, texels) & ~surfels.at_border  # beyond it lies the image of another chart
         albedo[at_home, :3] = _sharp(picture, wanted)[texels.texels[at_home]]
@@ -69,7 +69,9 @@ class SurfaceTexels:
             np.ascontiguousarray(rows.T, dtype=np.float32)
             for rows in (relief, surfels.smooth, surfels.log_scales, albedo[:, :3])
         )
-        self._stretch = SurfelStretch(mesh.vertices, mesh.faces, triangles=triangles, rotations=surfels.smooth)
+        self._stretch = SurfelStretch(
+            mesh.vertices, mesh.faces, triangles=triangles, rotations=surfels.smooth, deviations=deviations
+        )
         self._turned_to_lines = np.ascontiguousarray((surfels.rotations - surfels.smooth).T, dtype=np.float32)
         alpha = np.clip(surfel_opacities(albedo[:, 3]), 1e-6, 1 - 1e-6)
         self._opacity = np.clip(np.log(alpha / (1 - alpha)), -MOST_CLEAR, MOST_OPAQUE)

@@ -81,8 +81,9 @@ const footed = (/** @type {Rest} */ rest) =>
 /** Move the joint that carries the whole body, its root or hips above it, so far in the world. @param {Rest} rest @param {Pose} pose @param {Vector} shift */
 function move(rest, pose, shift) {
   const { root } = rest.target;
-  const hips = rest.matches.roles.hips[0];
-  const mover = ancestors(rest.target, root).includes(hips) ? hips : root;
+  const { hips, spine = [] } = rest.matches.roles;
+  const above = ancestors(rest.target, root);
+  const mover = [...hips, ...spine].reduce((top, joint) => (above.includes(joint) ? Math.min(top, joint) : top), root);
   const parent = rest.target.parents[mover];
   const local = parent < 0 ? shift : rotate(conjugate(quaternion(world(rest.target, pose).rotations, parent)), shift);
   for (let axis = 0; axis < 3; axis++) pose.translations[3 * mover + axis] += local[axis];

@@ -217,9 +217,11 @@ function settleTrunk(skeleton, chains) {
   const reach = arms.length ? arms.flatMap((arm) => ancestors(skeleton, arm)) : spine;
   const beyond = spine.some((joint) => reach.includes(joint)) ? spine.filter((joint) => !reach.includes(joint)) : [];
   if (beyond.length > 1 && !chains.neck && !chains.head) {
-    [chains.neck, chains.head] = [beyond.slice(0, -1), beyond.slice(-1)];
+    chains.neck = beyond;
     spine = spine.filter((joint) => !beyond.includes(joint));
   }
+  const { neck = [], head } = chains;
+  if (neck.length > 1 && !head) [chains.neck, chains.head] = [neck.slice(0, -1), neck.slice(-1)];
   chains.spine = spine.length ? spine : unnamedSpine(skeleton, chains, arms);
   if (!chains.spine.length) delete chains.spine;
 }

@@ -40,8 +40,8 @@ namespace Mua.Motion
             int[] legs = JointNames.Sides.Select(side => rest.Joint(side + " thigh")).Where(joint => joint >= 0).ToArray();
             hips = legs.Length == 2 ? legs : new[] { rest.Joint("hips") }.Where(joint => joint >= 0).ToArray();
             Sources = hips.Select(joint => rest.Matches.First[joint]).ToArray();
-            int top = rest.Matches.Roles["hips"][0];
-            mover = target.Ancestors(target.Root).Contains(top) ? top : target.Root;
+            IEnumerable<int> trunk = rest.Matches.Roles["hips"].Concat(rest.Matches.Roles["spine"]);
+            mover = trunk.Where(target.Ancestors(target.Root).Contains).DefaultIfEmpty(target.Root).Min();
             soles = JointNames.Sides.SelectMany(side => new[] { rest.Joint(side + " foot"), rest.Joint(side + " toe") })
                 .Where(joint => joint >= 0).ToArray();
             floor = FloorOf(Enumerable.Range(0, target.JointCount).Select(joint => Vector3D.Load(rest.TargetAt, joint).Y), Under);

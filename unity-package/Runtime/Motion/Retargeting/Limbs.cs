@@ -173,9 +173,14 @@ namespace Mua.Motion
             int[] beyond = spine.Any(reach.Contains) ? spine.Where(joint => !reach.Contains(joint)).ToArray() : new int[0];
             if (beyond.Length > 1 && !chains.Has("neck") && !chains.Has("head"))
             {
-                chains["neck"] = beyond.Take(beyond.Length - 1).ToArray();
-                chains["head"] = beyond.Skip(beyond.Length - 1).ToArray();
+                chains["neck"] = beyond;
                 spine = spine.Where(joint => !beyond.Contains(joint)).ToArray();
+            }
+            int[] neck = chains["neck"];
+            if (neck.Length > 1 && !chains.Has("head"))
+            {
+                chains["neck"] = neck.Take(neck.Length - 1).ToArray();
+                chains["head"] = neck.Skip(neck.Length - 1).ToArray();
             }
             chains["spine"] = spine.Length > 0 ? spine : UnnamedSpine(skeleton, chains, arms);
         }
