@@ -14,6 +14,7 @@ from mua.baking.check import fidelity_of
 from mua.baking.contact_sheet import CELL
 from mua.baking.distillation import Baked, Distillation, choose_device, distil_student, finish
 from mua.baking.filmed import bake_trained_teacher
+from mua.baking.forked import can_fork, in_fork
 from mua.baking.listener import Listener
 from mua.baking.options import check_output
 from mua.baking.plan import describe_plan, plan, split, usual_poses
@@ -46,9 +47,10 @@ FRAMES = "frames 5"  # raised where the stand-in teacher or the fit changes what
 FITTED = b"fitted"  # part of the key of a fit and of the recording that it corrects, which have one name
 
 
-def bake(settings: BakeSettings, listener: Listener) -> Baked:
+def bake(settings: BakeSettings, listener: Listener, *, alone: bool = False) -> Baked:
     """Carry out `settings`: record a teacher, distil it, write the avatar, measure it and image it.
 
+    Where nothing else is `alone` in this process, nor was, it is forked to record a character, which takes less memory.
     Raises InputError for anything that cannot be used, and where another process is at work in the work directory.
     """
     return_large_blocks()
@@ -58,11 +60,21 @@ def bake(settings: BakeSettings, listener: Listener) -> Baked:
     with DirectoryLock(settings.work, name=f"--work {settings.work}"):
         if settings.teacher is not None or settings.training is not None:
             return bake_trained_teacher(settings, device, listener)
-        with ExitStack() as processes:
-            return _bake(settings, device, listener, processes)
+        record = partial(_recorded, settings, device)
+        distillation, recording = in_fork(record, listener) if alone and can_fork() else record(listener)
+        student = distil_student(distillation, recording, listener)
+        return finish(distillation, student, recording, listener)
 
 
-def _bake(settings: BakeSettings, device: torch.device, listener: Listener, processes: ExitStack) -> Baked:
+def _recorded(settings: BakeSettings, device: torch.device, listener: Listener) -> tuple[Distillation, Recording]:
+    """The recording of a character, and what is to become of it."""
+    with ExitStack() as processes:
+        return _record_character(settings, device, listener, processes)
+
+
+def _record_character(
+    settings: BakeSettings, device: torch.device, listener: Listener, processes: ExitStack
+) -> tuple[Distillation, Recording]:
     waiting: list[Worker] = []
 
     def start(_: object = None) -> None:
@@ -112,8 +124,7 @@ def _bake(settings: BakeSettings, device: torch.device, listener: Listener, proc
         storage=settings.storage,
         compared=compared,
     )
-    student = distil_student(distillation, recording, listener)
-    return finish(distillation, student, recording, listener)
+    return distillation, recording
 
 
 def _fitted(

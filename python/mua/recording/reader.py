@@ -108,6 +108,9 @@ class Recording:
         frames = f"{self.count()} training and {self.count(held_out=True)} held-out frames"
         return f"<mua.Recording {str(self.directory)!r}: {frames} of {len(self.clips)} clips>"
 
+    def __reduce__(self) -> tuple[type["Recording"], tuple[Path]]:
+        return Recording, (self.directory,)  # another process maps its files
+
     def count(self, held_out: bool = False) -> int:
         """Number of frames with mesh and subbands."""
         return len(self._places[held_out])
