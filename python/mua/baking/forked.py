@@ -9,12 +9,14 @@ import os
 import signal
 import sys
 import traceback
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
+from multiprocessing.process import BaseProcess
 from operator import methodcaller
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
 import torch
 
@@ -46,33 +48,34 @@ def in_fork(work: Callable[[Listener], R], listener: Listener) -> R:
     context = get_context("fork")
     ours, theirs = context.Pipe(duplex=False)
     process = context.Process(target=_work, args=(work, theirs, ours))
-    try:
-        process.start()
-    except OSError as error:
-        raise InputError(f"a process to record with cannot be started ({error.strerror})") from error
-    theirs.close()
     with ours:
+        with theirs, warnings.catch_warnings():
+            warnings.simplefilter("ignore", DeprecationWarning)  # of Python 3.12: OpenBLAS has threads, which survive
+            try:
+                process.start()
+            except OSError as error:
+                raise InputError(f"a process to record with cannot be started ({error.strerror})") from error
         try:
-            while True:
-                message = ours.recv()
-                if isinstance(message, methodcaller):
-                    message(listener)
-                    continue
-                process.join()
-                if isinstance(message, BaseException):
-                    raise message
-                return message.value  # type: ignore[no-any-return]
-        except EOFError:
+            while isinstance(message := _received(ours, process), methodcaller):
+                message(listener)
             process.join()
-            raise InputError(_lost(process.exitcode or 0)) from None
         finally:
-            process.terminate()
+            process.terminate()  # has no effect on one that has ended
             process.join()
+    if isinstance(message, Exception):
+        raise message
+    return message.value  # type: ignore[no-any-return]
 
 
-def _lost(status: int) -> str:
+def _received(ours: Connection, process: BaseProcess) -> Any:
+    """The next message of a fork; raises InputError where it ends without one."""
+    try:
+        return ours.recv()
+    except EOFError:
+        process.join()
+    status = process.exitcode or 0
     how = f"was ended by signal {-status}" if status < 0 else f"ended with status {status}"
-    return (
+    raise InputError(
         f"the process that fits and records {how}, perhaps for want of memory; "
         "the same command goes on from what is stored"
     )
@@ -87,7 +90,8 @@ def _work(work: Callable[[Listener], object], theirs: Connection, ours: Connecti
     try:
         theirs.send(_Result(work(_Sender(theirs))))
     except Exception as error:
-        error.add_note(traceback.format_exc())
+        if not isinstance(error, InputError):
+            error.add_note(traceback.format_exc())  # of this process; pickling leaves it out
         theirs.send(error)
     except KeyboardInterrupt:
         os._exit(1)  # nobody listens any more

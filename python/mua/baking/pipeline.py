@@ -50,8 +50,9 @@ FITTED = b"fitted"  # part of the key of a fit and of the recording that it corr
 def bake(settings: BakeSettings, listener: Listener, *, alone: bool = False) -> Baked:
     """Carry out `settings`: record a teacher, distil it, write the avatar, measure it and image it.
 
-    Where nothing else is `alone` in this process, nor was, it is forked to record a character, which takes less memory.
-    Raises InputError for anything that cannot be used, and where another process is at work in the work directory.
+    `alone` says that nothing has computed with torch in this process: a fork of it then records a character and ends,
+    which takes less memory. Raises InputError for anything that cannot be used, and where another process is at work in
+    the work directory.
     """
     return_large_blocks()
     device = choose_device(settings.device)
@@ -60,20 +61,20 @@ def bake(settings: BakeSettings, listener: Listener, *, alone: bool = False) -> 
     with DirectoryLock(settings.work, name=f"--work {settings.work}"):
         if settings.teacher is not None or settings.training is not None:
             return bake_trained_teacher(settings, device, listener)
-        record = partial(_recorded, settings, device)
-        distillation, recording = in_fork(record, listener) if alone and can_fork() else record(listener)
+        prepare = partial(_prepare, settings, device)
+        distillation, recording = in_fork(prepare, listener) if alone and can_fork() else prepare(listener)
         student = distil_student(distillation, recording, listener)
         return finish(distillation, student, recording, listener)
 
 
-def _recorded(settings: BakeSettings, device: torch.device, listener: Listener) -> tuple[Distillation, Recording]:
+def _prepare(settings: BakeSettings, device: torch.device, listener: Listener) -> tuple[Distillation, Recording]:
     """The recording of a character, and what is to become of it."""
     with ExitStack() as processes:
-        return _record_character(settings, device, listener, processes)
+        return _prepare_by(processes, settings, device, listener)
 
 
-def _record_character(
-    settings: BakeSettings, device: torch.device, listener: Listener, processes: ExitStack
+def _prepare_by(
+    processes: ExitStack, settings: BakeSettings, device: torch.device, listener: Listener
 ) -> tuple[Distillation, Recording]:
     waiting: list[Worker] = []
 
