@@ -5,6 +5,7 @@ the modules that are loaded; a second interpreter would take seconds to load the
 """
 
 import ctypes
+import gc
 import os
 import signal
 import sys
@@ -45,6 +46,8 @@ def in_fork(work: Callable[[Listener], R], listener: Listener) -> R:
     Nothing may have computed with torch in this process, as its threads do not survive a fork. The fork ends with this
     process, however that one ends. Raises InputError where the fork is killed.
     """
+    torch.optim.Adam([torch.zeros(1)])  # the first one loads hundreds of modules: once, for both processes
+    gc.freeze()  # the collector writes to what it looks at, and would copy the memory that is shared
     context = get_context("fork")
     ours, theirs = context.Pipe(duplex=False)
     process = context.Process(target=_work, args=(work, theirs, ours))
