@@ -81,7 +81,7 @@ def _in_texture(bands: Bands, wavelet: str) -> Bands:
 def factorize_channel(
     branch: Branch,
     channel: int,
-    bands: Bands,  # subbands of this channel alone
+    bands: Bands,  # subbands of this channel alone; overwritten
     *,
     sweeps: int,
     generator: torch.Generator,
@@ -103,7 +103,7 @@ def factorize_channel(
     levels = ((branch.d3, branch.ranks.d3, d3), (branch.d2, branch.ranks.d2, d2))
     for (detail, rank, band), own in zip(levels, fine, strict=True):
         detail.mean[:, channel] = torch.einsum("f,fsij->sij", counts, band) / len(band)
-        band = (band - detail.mean[:, channel]).mul_(roots[:, None, None, None])  # of all frames: in place
+        band = band.sub_(detail.mean[:, channel]).mul_(roots[:, None, None, None])  # of all frames: in place
         factors = separable_blendshapes(band, rank, sweeps=sweeps, generator=generator, worth=own)
         detail.h[:, channel], detail.w[:, channel] = factors.h, factors.w
         coefficients.append(factors.coefficients / roots[:, None])

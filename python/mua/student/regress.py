@@ -15,6 +15,7 @@ from mua.student.local import Locality
 from mua.student.model import build_mlp, linear_layers
 from mua.student.points import draw_close, draw_points
 from mua.student.settings import Generalisation
+from mua.training.memory import release_memory
 from mua.training.optimise import Run, optimise
 from mua.training.processes import Share
 from mua.training.schedule import Schedule
@@ -82,6 +83,7 @@ def regress(
     def samples() -> dict[range, tuple[Tensor, Tensor]]:
         generator = run.alone(f"{stage} points").generator
         smooth = fit_local(inputs, goal, components, locality, generator=generator, own=own, fit=fit)
+        release_memory()
         points = draw_points(
             inputs,
             components,
