@@ -67,7 +67,7 @@ def in_fork(work: Callable[[Listener], R], listener: Listener) -> R:
             process.join()
     if isinstance(message, Exception):
         raise message
-    return message.value  # type: ignore[no-any-return]
+    return message.value
 
 
 def _received(ours: Connection, process: BaseProcess) -> Any:
