@@ -12,6 +12,7 @@ from mua.student.model import Alphas, Branch, outer_products
 from mua.student.settings import Settings
 from mua.student.source import Source
 from mua.student.texture_metric import in_texture, to_subbands
+from mua.training.memory import release_memory
 from mua.training.optimise import Progress, Run
 from mua.wavelets import Bands
 
@@ -59,6 +60,7 @@ def factorize_branch(
         for level, own in zip(alphas, solved, strict=True):
             level[:, channel] = own
         done.append(channel)
+        release_memory()
         run.report(Progress(stage, len(done), len(owned), None, len(done) / (time.monotonic() - started)))
 
     fit_apart([partial(solve, channel) for channel in owned], run)

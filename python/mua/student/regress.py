@@ -83,7 +83,6 @@ def regress(
     def samples() -> dict[range, tuple[Tensor, Tensor]]:
         generator = run.alone(f"{stage} points").generator
         smooth = fit_local(inputs, goal, components, locality, generator=generator, own=own, fit=fit)
-        release_memory()
         points = draw_points(
             inputs,
             components,
@@ -95,6 +94,7 @@ def regress(
         if close:
             frames = z if own is None or not own.any() else z[own]
             points = torch.cat([points, draw_close(frames, close, generator=generator).half()])
+        release_memory()
         parts = {part: points[part.start :: part.step] for part in run.processes.parts(count)}
         return {part: (at, _values(smooth, at, width=goal.shape[1])) for part, at in parts.items()}
 
@@ -154,6 +154,7 @@ def fit_local(
         turns.append(turn)
         narrow, wide = factors(share)
         terms.append(Through(through(z @ turn, goal @ narrow), wide))
+        release_memory()
     return Sum(tuple(terms), tuple(turns))
 
 
