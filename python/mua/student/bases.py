@@ -59,8 +59,8 @@ def factorize_branch(
                 to_subbands(branch, channel, wavelet)
         for level, own in zip(alphas, solved, strict=True):
             level[:, channel] = own
-        done.append(channel)
         release_memory()
+        done.append(channel)
         run.report(Progress(stage, len(done), len(owned), None, len(done) / (time.monotonic() - started)))
 
     fit_apart([partial(solve, channel) for channel in owned], run)
