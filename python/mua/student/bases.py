@@ -2,6 +2,7 @@
 
 import time
 from functools import partial
+from threading import Lock
 
 import torch
 from torch import Tensor
@@ -45,6 +46,7 @@ def factorize_branch(
     alphas = Alphas(*(room(frames, branch.channels, rank) for rank in (ranks.ll, ranks.d3, ranks.d2)))
     energy = room(branch.channels)
     done: list[int] = []
+    counting = Lock()  # of two threads
 
     def solve(channel: int, run: Run) -> None:
         bands = Bands(*(band.to(run.device) for band in source(slice(channel, channel + 1), torch.arange(frames))))
@@ -60,8 +62,9 @@ def factorize_branch(
         for level, own in zip(alphas, solved, strict=True):
             level[:, channel] = own
         release_memory()
-        done.append(channel)
-        run.report(Progress(stage, len(done), len(owned), None, len(done) / (time.monotonic() - started)))
+        with counting:
+            done.append(channel)
+            run.report(Progress(stage, len(done), len(owned), None, len(done) / (time.monotonic() - started)))
 
     fit_apart([partial(solve, channel) for channel in owned], run)
     for channel in range(branch.channels):
