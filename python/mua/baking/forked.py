@@ -74,7 +74,7 @@ def _received(ours: Connection, process: BaseProcess) -> Any:
     """The next message of a fork; raises InputError where it ends without one."""
     try:
         return ours.recv()
-    except EOFError:
+    except (EOFError, OSError):  # killed between messages or within one
         process.join()
     status = process.exitcode or 0
     how = f"was ended by signal {-status}" if status < 0 else f"ended with status {status}"
