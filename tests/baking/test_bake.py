@@ -14,8 +14,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+import torch
 from column_files import column_file
-from commands import Commands
+from commands import Commands, python
 from gltf_files import animate, body
 from PIL import Image
 from recordings import content
@@ -305,6 +306,27 @@ def test_killed_bake_ends_in_the_same_bytes(baked: Baked, tmp_path: Path) -> Non
         process.wait()
     subprocess.run(run, check=True)
     assert (tmp_path / "a.muaavatar").read_bytes() == baked.output.read_bytes()
+
+
+COMMAND = """
+import atexit, os
+from mua.baking import options
+from mua.cli.bake import run
+from small_bakes import SMALL
+
+options.preset = lambda name: SMALL
+os.register_at_fork(after_in_parent=lambda: atexit.register(print, "forked"))
+run()
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="needs Linux, where a process with threads can fork")
+def test_a_command_records_in_a_fork_and_ends_in_the_same_bytes(baked: Baked, tmp_path: Path) -> None:
+    output = tmp_path / "a.muaavatar"
+    ended = python(COMMAND, "--device", "cpu", "-o", output, PYTHONPATH=os.pathsep.join(sys.path))
+    assert output.read_bytes() == baked.output.read_bytes(), ended.err
+    assert ended.out.count("forked\n") == (not torch.cuda.is_available())
+    assert [line for line in ended.out.splitlines() if line in ("character", "recording")] == ["character", "recording"]
 
 
 def test_a_command_is_refused_where_another_is_at_work(tmp_path: Path, refused: Callable[..., str]) -> None:

@@ -50,6 +50,7 @@ def test_what_was_read_does_not_stay_in_memory(written: Path) -> None:
     recording.subbands(GEOMETRY, range(recording.count()))
     recording.meshes(range(recording.count()))
     recording.mean_mesh()
+    recording.mean_texture()
     assert sum(1 for _ in recording.whole_frames())
     resident: dict[str, int] = {}
     name = ""
@@ -59,9 +60,9 @@ def test_what_was_read_does_not_stay_in_memory(written: Path) -> None:
         elif line.startswith("Rss:") and name:
             resident[name] = resident.get(name, 0) + int(line.split()[1])
             name = ""
-    kept = ("meshes.npy", "ll.npy", "d3.npy", "d2.npy")
-    assert {name: size for name, size in resident.items() if size and name.startswith((*kept, "whole"))} == {}
-    assert set(kept) <= set(resident)
+    assert {name: size for name, size in resident.items() if size} == {}
+    kept = {"meshes.npy", "ll.npy", "d3.npy", "d2.npy", "rotations.npy", "translations.npy", "sum.npy"}
+    assert kept <= set(resident)
 
 
 def pywt_subbands(fill: Fill, texture: Array) -> list[Array]:

@@ -15,6 +15,7 @@ from mua.baking.check import fidelity_of
 from mua.baking.contact_sheet import CELL
 from mua.baking.distillation import Baked, Distillation, choose_device, distil_student, finish
 from mua.baking.filmed import bake_trained_teacher
+from mua.baking.forked import can_fork, in_fork
 from mua.baking.listener import Listener
 from mua.baking.options import check_output
 from mua.baking.plan import describe_plan, plan, split, usual_poses
@@ -47,10 +48,12 @@ FRAMES = "frames 6"  # raised where the stand-in teacher or the fit changes what
 FITTED = b"fitted"  # part of the key of a fit and of the recording that it corrects, which have one name
 
 
-def bake(settings: BakeSettings, listener: Listener) -> Baked:
+def bake(settings: BakeSettings, listener: Listener, *, alone: bool = False) -> Baked:
     """Carry out `settings`: record a teacher, distil it, write the avatar, measure it and image it.
 
-    Raises InputError for anything that cannot be used, and where another process is at work in the work directory.
+    `alone` says that nothing has computed with torch in this process: a fork of it then records a character and ends,
+    which takes less memory. Raises InputError for anything that cannot be used, and where another process is at work in
+    the work directory.
     """
     return_large_blocks()
     device = choose_device(settings.device)
@@ -60,11 +63,22 @@ def bake(settings: BakeSettings, listener: Listener) -> Baked:
         if settings.teacher is not None or settings.training is not None:
             return bake_trained_teacher(settings, device, listener)
         # numpy's matrix products are small, and threads of OpenBLAS wait for the next one with their cores busy
-        with threadpool_limits(1, user_api="blas"), ExitStack() as processes:
-            return _bake(settings, device, listener, processes)
+        with threadpool_limits(1, user_api="blas"):
+            prepare = partial(_prepare, settings, device)
+            distillation, recording = in_fork(prepare, listener) if alone and can_fork() else prepare(listener)
+            student = distil_student(distillation, recording, listener)
+            return finish(distillation, student, recording, listener)
 
 
-def _bake(settings: BakeSettings, device: torch.device, listener: Listener, processes: ExitStack) -> Baked:
+def _prepare(settings: BakeSettings, device: torch.device, listener: Listener) -> tuple[Distillation, Recording]:
+    """The recording of a character, and what is to become of it."""
+    with ExitStack() as processes:
+        return _prepare_by(processes, settings, device, listener)
+
+
+def _prepare_by(
+    processes: ExitStack, settings: BakeSettings, device: torch.device, listener: Listener
+) -> tuple[Distillation, Recording]:
     waiting: list[Worker] = []
 
     def start(_: object = None) -> None:
@@ -114,8 +128,7 @@ def _bake(settings: BakeSettings, device: torch.device, listener: Listener, proc
         storage=settings.storage,
         compared=compared,
     )
-    student = distil_student(distillation, recording, listener)
-    return finish(distillation, student, recording, listener)
+    return distillation, recording
 
 
 def _fitted(

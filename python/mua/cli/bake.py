@@ -1,5 +1,6 @@
 """mua-bake: a rigged character and its motion become a verified `.muaavatar`."""
 
+import sys
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -71,12 +72,13 @@ def _bake(options: dict[str, Any], more: list[Path], *, check: bool, json: Path 
             check_and_show(settings, json, verbose=verbose)
         return
 
+    alone = "torch" not in sys.modules  # else its threads may have started, which do not survive a fork
     from mua.baking.pipeline import bake  # after the options are checked, because it takes seconds to load
     from mua.cli.display import Display, show
 
     console = printer()
     with Display(console, verbose=verbose) as display:
-        baked = bake(settings, display)
+        baked = bake(settings, display, alone=alone)
     show(console, baked)
 
 

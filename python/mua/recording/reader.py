@@ -103,10 +103,14 @@ class Recording:
             check_sum(last, indices[-1])
             if not np.isfinite(self._sum).all():
                 raise not_finite(last, "the sum of all frames")
+            forget(self._sum)
 
     def __repr__(self) -> str:
         frames = f"{self.count()} training and {self.count(held_out=True)} held-out frames"
         return f"<mua.Recording {str(self.directory)!r}: {frames} of {len(self.clips)} clips>"
+
+    def __reduce__(self) -> tuple[type["Recording"], tuple[Path]]:
+        return Recording, (self.directory,)  # another process maps its files
 
     def count(self, held_out: bool = False) -> int:
         """Number of frames with mesh and subbands."""
@@ -137,6 +141,7 @@ class Recording:
         """The mean [N, 23] float64 over all training frames, at full precision and not only over those kept whole."""
         count = self._averaged_frames  # checked first: without frames there is no sum
         mean = self._sum / count
+        forget(self._sum)
         mean += self.reference.texture
         return mean
 
@@ -277,7 +282,7 @@ def _clips(shards: Sequence[_Shard], header: Header) -> tuple[RecordedClip, ...]
             held_out[segment.clip] = segment.held_out
             start += segment.poses
     complete = {name for shard in shards for name in shard.index.complete}
-    return tuple(
+    clips = tuple(
         RecordedClip(
             name,
             header.rate,
@@ -289,3 +294,7 @@ def _clips(shards: Sequence[_Shard], header: Header) -> tuple[RecordedClip, ...]
         )
         for name in rotations
     )
+    for shard in shards:  # what was joined is a copy
+        for name in {"rotations", "translations"} & set(shard.arrays):
+            forget(shard.arrays[name])
+    return clips

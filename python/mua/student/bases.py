@@ -2,6 +2,7 @@
 
 import time
 from functools import partial
+from threading import Lock
 
 import torch
 from torch import Tensor
@@ -12,6 +13,7 @@ from mua.student.model import Alphas, Branch, outer_products
 from mua.student.settings import Settings
 from mua.student.source import Source
 from mua.student.texture_metric import in_texture, to_subbands
+from mua.training.memory import release_memory
 from mua.training.optimise import Progress, Run
 from mua.wavelets import Bands
 
@@ -44,6 +46,7 @@ def factorize_branch(
     alphas = Alphas(*(room(frames, branch.channels, rank) for rank in (ranks.ll, ranks.d3, ranks.d2)))
     energy = room(branch.channels)
     done: list[int] = []
+    counting = Lock()  # of two threads
 
     def solve(channel: int, run: Run) -> None:
         bands = Bands(*(band.to(run.device) for band in source(slice(channel, channel + 1), torch.arange(frames))))
@@ -58,8 +61,10 @@ def factorize_branch(
                 to_subbands(branch, channel, wavelet)
         for level, own in zip(alphas, solved, strict=True):
             level[:, channel] = own
-        done.append(channel)
-        run.report(Progress(stage, len(done), len(owned), None, len(done) / (time.monotonic() - started)))
+        release_memory()
+        with counting:
+            done.append(channel)
+            run.report(Progress(stage, len(done), len(owned), None, len(done) / (time.monotonic() - started)))
 
     fit_apart([partial(solve, channel) for channel in owned], run)
     for channel in range(branch.channels):
@@ -81,7 +86,7 @@ def _in_texture(bands: Bands, wavelet: str) -> Bands:
 def factorize_channel(
     branch: Branch,
     channel: int,
-    bands: Bands,  # subbands of this channel alone
+    bands: Bands,  # subbands of this channel alone; overwritten
     *,
     sweeps: int,
     generator: torch.Generator,
@@ -103,7 +108,7 @@ def factorize_channel(
     levels = ((branch.d3, branch.ranks.d3, d3), (branch.d2, branch.ranks.d2, d2))
     for (detail, rank, band), own in zip(levels, fine, strict=True):
         detail.mean[:, channel] = torch.einsum("f,fsij->sij", counts, band) / len(band)
-        band = (band - detail.mean[:, channel]).mul_(roots[:, None, None, None])  # of all frames: in place
+        band = band.sub_(detail.mean[:, channel]).mul_(roots[:, None, None, None])  # of all frames: in place
         factors = separable_blendshapes(band, rank, sweeps=sweeps, generator=generator, worth=own)
         detail.h[:, channel], detail.w[:, channel] = factors.h, factors.w
         coefficients.append(factors.coefficients / roots[:, None])

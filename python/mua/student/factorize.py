@@ -211,12 +211,17 @@ def _gram(rows: Tensor) -> Tensor:
     return rows @ rows.transpose(-1, -2)
 
 
-def _update(right: Tensor, gram: Tensor, previous: Tensor) -> Tensor:
+def _update(
+    right: Tensor,  # [..., R, M]
+    gram: Tensor,  # [..., R, R] double; overwritten, because one for each line of samples is large
+    previous: Tensor,  # [..., R, M]
+) -> Tensor:
     """Solve gram x = right, held to `previous` by a proximal term: well-posed for any rank, still a descent step."""
-    pull = PROXIMAL * gram.diagonal(dim1=-2, dim2=-1).mean(-1)[..., None, None] + torch.finfo(gram.dtype).tiny
-    identity = torch.eye(gram.shape[-1], dtype=gram.dtype, device=gram.device)
-    factor = torch.linalg.cholesky(gram + pull * identity)
-    return torch.cholesky_solve(right + pull * previous, factor).to(right)
+    diagonal = gram.diagonal(dim1=-2, dim2=-1)
+    pull = PROXIMAL * diagonal.mean(-1, keepdim=True) + torch.finfo(gram.dtype).tiny
+    diagonal.add_(pull)
+    factor = torch.linalg.cholesky(gram)
+    return torch.cholesky_solve(right + pull[..., None] * previous, factor).to(right)
 
 
 def _balance(factors: Factors) -> Factors:

@@ -15,6 +15,7 @@ from mua.student.local import Locality
 from mua.student.model import build_mlp, linear_layers
 from mua.student.points import draw_close, draw_points
 from mua.student.settings import Generalisation
+from mua.training.memory import release_memory
 from mua.training.optimise import Run, optimise
 from mua.training.processes import Share
 from mua.training.schedule import Schedule
@@ -93,6 +94,7 @@ def regress(
         if close:
             frames = z if own is None or not own.any() else z[own]
             points = torch.cat([points, draw_close(frames, close, generator=generator).half()])
+        release_memory()
         parts = {part: points[part.start :: part.step] for part in run.processes.parts(count)}
         return {part: (at, _values(smooth, at, width=goal.shape[1])) for part, at in parts.items()}
 
@@ -152,6 +154,7 @@ def fit_local(
         turns.append(turn)
         narrow, wide = factors(share)
         terms.append(Through(through(z @ turn, goal @ narrow), wide))
+        release_memory()
     return Sum(tuple(terms), tuple(turns))
 
 

@@ -148,7 +148,9 @@ def _sensitivities(samples: Samples, run: Run) -> Bands | None:
     measure, run = samples.sensitivities, run.alone(SENSITIVITIES)
     if measure is None:
         return None
-    return Bands(**run.once(SENSITIVITIES, lambda: measure(run)._asdict()))
+    measured = Bands(**run.once(SENSITIVITIES, lambda: measure(run)._asdict()))
+    release_memory()
+    return measured
 
 
 def _silent(_: Progress) -> None:
