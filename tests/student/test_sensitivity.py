@@ -152,6 +152,20 @@ def test_the_loss_is_that_of_pictures_to_first_order() -> None:
     torch.testing.assert_close(picture_loss(predicted, truth, counts), torch.cat(errors).square().mean())
 
 
+def test_errors_of_hue_count_more_than_those_of_light() -> None:
+    truth = Bands(*(torch.zeros(1, *s[1:-3], 6, *s[-2:]) for s in _shapes(2)))
+    ones = Bands(*(torch.ones_like(band) for band in truth))
+    red = Bands(*(band.clone() for band in truth))
+    for band in red:
+        band[..., 3, :, :] = 1  # red of the second three
+    lighter = Bands(*(band.clone() for band in truth))
+    for band in lighter:
+        band[..., 3:, :, :] = 1 / 3  # as much, but of all three colours
+    plain, by_hue = picture_loss(red, truth, ones), picture_loss(red, truth, ones, hue=3)
+    torch.testing.assert_close(by_hue, plain * (1 + 3 * 2 / 3))  # two thirds of its square are hue
+    torch.testing.assert_close(picture_loss(lighter, truth, ones, hue=3), picture_loss(lighter, truth, ones))
+
+
 def test_sensitivities_to_weighted_subbands_have_a_mean_square_of_one() -> None:
     rng = torch.Generator().manual_seed(0)
     counts, weights = Bands(*(torch.rand(s, generator=rng) for s in _shapes(2))), torch.rand(23, generator=rng) + 0.1

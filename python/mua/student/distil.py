@@ -21,6 +21,7 @@ from mua.pose.encoding import PoseEncoding
 from mua.recording import Recording
 from mua.rig.bones import figure_scale
 from mua.rig.moving import moving_joints
+from mua.student.finetune import HUE
 from mua.student.local import body_parts
 from mua.student.model import Student
 from mua.student.outline import Body
@@ -62,7 +63,8 @@ def distil(
     """
     student, samples = prepare(recording, settings)
     counted = () if samples.weights is None else (samples.weights,)
-    key = run_key((settings, recording.fingerprint(), len(student.components)), [student.mean, student.scale, *counted])
+    rules = (settings, recording.fingerprint(), len(student.components), HUE)
+    key = run_key(rules, [student.mean, student.scale, *counted])
     checkpoints = Checkpoints(directory, key)
     if processes.first:
         checkpoints.remove_leftovers(name for names in stages(settings).values() for name in names)

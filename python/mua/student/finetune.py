@@ -15,6 +15,7 @@ from mua.wavelets import Bands
 
 LL_WEIGHT = 5.0  # lambda_LL of the paper; lambda_2 = lambda_3 = 1
 BASIS_RATE = 3.0  # learning rate of the bases relative to that of the MLP
+HUE = 3.0  # how much more errors of colours count by which red, green and blue differ: a tint stands out, a shade less
 
 
 def subband_loss(predicted: Bands, truth: Bands) -> Tensor:
@@ -27,10 +28,16 @@ def picture_loss(
     predicted: Bands,
     truth: Bands,
     sensitivities: Bands,  # for one frame, from `mua.student.sensitivity`
+    *,
+    hue: float = 0.0,  # how much more errors count that are not alike in red, green and blue; channels are such threes
 ) -> Tensor:
     """Mean squared error weighted by the change of images per unit: to first order, the error of images."""
-    errors = [((a - b) * s).square() for a, b, s in zip(predicted, truth, sensitivities, strict=True)]
-    return torch.stack([error.sum() for error in errors]).sum() / sum(error.numel() for error in errors)
+    errors = [(a - b) * s for a, b, s in zip(predicted, truth, sensitivities, strict=True)]
+    squares = [error.square().sum() for error in errors]
+    if hue:
+        colours = [error.unflatten(-3, (-1, 3)) for error in errors]
+        squares += [hue * (own - own.mean(-3, keepdim=True)).square().sum() for own in colours]
+    return torch.stack(squares).sum() / sum(error.numel() for error in errors)
 
 
 def relative(

@@ -15,7 +15,7 @@ from mua.student.branches import fit_apart, side_by_side
 from mua.student.coarse import fit_coarse, set_pca
 from mua.student.components import Components
 from mua.student.conditioned import fold
-from mua.student.finetune import BASIS_RATE, finetune, picture_loss, relative, subband_loss
+from mua.student.finetune import BASIS_RATE, HUE, finetune, picture_loss, relative, subband_loss
 from mua.student.local import Parts, texture_locality
 from mua.student.model import Branch, Student, lowpass_texels
 from mua.student.negligible import drop_negligible, freeze_channels
@@ -256,7 +256,8 @@ def fit_branch(
     release_memory()
     error, basis_rate = subband_loss, BASIS_RATE
     if sensitivities is not None:
-        error = partial(picture_loss, sensitivities=relative(sensitivities.of(channels), weights))
+        seen = relative(sensitivities.of(channels), weights)
+        error = partial(picture_loss, sensitivities=seen, hue=HUE if light else 0.0)
         basis_rate = SEEN_BASIS_RATE
     stage = f"{name} fine-tuning"
     finetune(
