@@ -4,6 +4,7 @@ import io
 import json
 import re
 import shutil
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -24,8 +25,10 @@ from mua.baking.report import UNSAID
 from mua.cli import display
 from mua.cli.display import Display
 from mua.recording import PlannedClip, TeacherWriter, record
-from mua.student import distil, source
+from mua.student import distil, source, stages
+from mua.student.finetune import HUE, picture_loss
 from mua.student.settings import STAGES, Budget, preset
+from mua.wavelets import Bands
 
 
 def test_leaves_an_avatar_of_the_recordings_texture_size(trained: Path) -> None:
@@ -63,9 +66,19 @@ def test_leaves_nothing_half_written(trained: Path) -> None:
     assert not list(trained.parent.rglob("*.part*"))
 
 
-def test_stages_one_by_one_end_in_the_same_bytes(
-    written: Path, trained: Path, tmp_path: Path, mua_train: Training
-) -> None:
+@pytest.fixture
+def two_threads() -> Iterator[None]:
+    """As many as torch has on two cores, on which the last bits of its sums depend."""
+    before = torch.get_num_threads()
+    torch.set_num_threads(2)
+    yield
+    torch.set_num_threads(before)
+
+
+@pytest.mark.usefixtures("two_threads")
+def test_stages_one_by_one_end_in_the_same_bytes(written: Path, tmp_path: Path, mua_train: Training) -> None:
+    whole = tmp_path / "whole" / "a.muaavatar"
+    assert mua_train(written, output=whole).status in FINISHED
     for stage in reversed(STAGES):  # out of order: each but the coarse mesh needs the one before it
         ended = mua_train(written, "--stage", stage)
         if stage in ("coarse", "bases"):
@@ -79,12 +92,27 @@ def test_stages_one_by_one_end_in_the_same_bytes(
         assert mua_train(written, "--stage", stage).status == 0
         assert not (tmp_path / "a.muaavatar").exists()
     assert mua_train(written).status in FINISHED
-    assert (tmp_path / "a.muaavatar").read_bytes() == trained.read_bytes()
+    assert (tmp_path / "a.muaavatar").read_bytes() == whole.read_bytes()
 
 
 def test_the_papers_recipe_has_two_stages(written: Path, mua_train: Training) -> None:
     refused = mua_train(written, "--recipe", "paper", "--stage", "bases")
     assert "expected coarse or fine-tuning" in refused.sentence
+
+
+def test_errors_of_hue_count_more_in_colours_alone(
+    written: Path, mua_train: Training, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    seen = set()
+
+    def loss(predicted: Bands, truth: Bands, sensitivities: Bands, *, hue: float) -> torch.Tensor:
+        seen.add((predicted.ll.shape[-3], hue))
+        return picture_loss(predicted, truth, sensitivities, hue=hue)
+
+    monkeypatch.setattr(stages, "picture_loss", loss)
+    assert mua_train(written).status in FINISHED
+    assert seen == {(11, 0.0), (12, HUE)}
+    assert HUE > 0
 
 
 def test_a_repeated_command_repeats_no_step(written: Path, trained: Path, mua_train: Training) -> None:
