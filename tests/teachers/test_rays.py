@@ -11,28 +11,25 @@ import warp as wp
 from tube import tube
 
 from mua.arrays import Array
-from mua.teachers.simulated.rays import DEVICE, LANES, Tree, meets
+from mua.teachers.simulated.rays import DEVICE, LANES, Boxes, Tree, meets
 
 
 @wp.kernel(enable_backward=False)
 def ask(
-    bottom: int,
-    children: wp.array[int],
-    boxes: wp.array[float],
-    leaves: wp.array[float],
+    tree: Boxes,
     origins: wp.array[wp.vec3],
     directions: wp.array[wp.vec3],
     met: wp.array[wp.bool],
 ):
     i = wp.tid()
-    met[i] = meets(bottom, children, boxes, leaves, origins[i], directions[i])
+    met[i] = meets(tree, origins[i], directions[i])
 
 
 def met(tree: Tree, vertices: Array, origins: Array, directions: Array) -> Array:
     """Which rays [n] meet a surface."""
     found = wp.zeros(len(origins), dtype=bool, device=DEVICE)
     rays: list[wp.array] = [wp.array(values, dtype=wp.vec3, device=DEVICE) for values in (origins, directions)]
-    wp.launch(ask, dim=len(origins), inputs=[*tree.at(vertices), *rays], outputs=[found], device=DEVICE)
+    wp.launch(ask, dim=len(origins), inputs=[tree.at(vertices), *rays], outputs=[found], device=DEVICE)
     return np.asarray(found.numpy())
 
 

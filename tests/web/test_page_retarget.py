@@ -226,9 +226,8 @@ def test_a_mapping_names_what_names_do_not_tell(tmp_path: Path) -> None:
 
 
 def test_expressions_move_the_nearest_of_the_avatar_and_others_are_counted(tmp_path: Path) -> None:
-    source = person()
-    clip = moving(source)
-    made, blink = vrma(source, clip), np.linspace(0, 1, len(clip))
+    clip = moving(person())
+    made, blink = vrma(person(), clip), np.linspace(0, 1, len(clip))
     with_expressions(made, blink=blink, happy=1 - blink, aa=0 * blink)
     path = made.save(tmp_path / "face.vrma")
     names = ["smile", "happy", "eyeBlinkLeft", "eyeBlinkRight"]
@@ -253,9 +252,8 @@ def test_shape_keys_of_smplx_move_either_of_a_pair(tmp_path: Path) -> None:
 
 
 def test_the_gaze_of_a_vrm_animation_moves_what_the_package_moves_by_it(tmp_path: Path) -> None:
-    source = person()
-    clip = moving(source)
-    made, count = vrma(source, clip), len(clip)
+    clip = moving(person())
+    made, count = vrma(person(), clip), len(clip)
     turns = np.concatenate(
         [
             Rotation.from_euler("y", np.linspace(-60, 60, count // 2)[:, None], degrees=True).as_quat(),
@@ -273,16 +271,10 @@ def test_the_gaze_of_a_vrm_animation_moves_what_the_package_moves_by_it(tmp_path
 
 
 def test_weights_of_a_mesh_are_expressions_of_their_names(tmp_path: Path) -> None:
-    source = person()
-    clip = moving(source)
-    made, open_jaw = animated(source, clip), np.linspace(0, 1, len(clip))
-    animation = made.json["animations"][0]
+    clip = moving(person())
+    made, open_jaw = animated(person(), clip), np.linspace(0, 1, len(clip))
     made.json["meshes"] = [{"primitives": [], "extras": {"targetNames": ["jawOpen", "tongueOut"]}}]
-    made.json["nodes"].append({"mesh": 0})
-    output = made.accessor(np.stack([open_jaw, 1 - open_jaw], axis=1).reshape(-1, 1))
-    animation["samplers"].append({"input": animation["samplers"][0]["input"], "output": output})
-    target = {"node": len(made.json["nodes"]) - 1, "path": "weights"}
-    animation["channels"].append({"sampler": len(animation["samplers"]) - 1, "target": target})
+    with_track(made, "weights", np.stack([open_jaw, 1 - open_jaw], axis=1).reshape(-1, 1), name="face", mesh=0)
     found = browser_clip(tmp_path, person(), made.save(tmp_path / "face.glb"), expressions=["jawOpen"])
     np.testing.assert_allclose(found["expressions"], open_jaw, atol=4 * FLOAT)
 

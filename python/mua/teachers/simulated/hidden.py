@@ -19,7 +19,7 @@ from mua import rotation
 from mua.arrays import Array
 from mua.rig.character import Character
 from mua.rig.moving import moving_joints
-from mua.teachers.simulated.rays import Tree, meets
+from mua.teachers.simulated.rays import Boxes, Tree, meets
 from mua.teachers.simulated.surface import SkinnedSurface
 from mua.training.threads import in_order
 from mua.training.warp_start import NO_NANS, start
@@ -40,10 +40,7 @@ wp.set_module_options(NO_NANS)
 
 @wp.kernel(enable_backward=False)
 def look_out(
-    bottom: int,
-    children: wp.array[int],
-    boxes: wp.array[float],
-    leaves: wp.array[float],
+    tree: Boxes,
     cut: wp.uint64,
     uv: wp.array[wp.vec2],
     shown: wp.array2d[wp.bool],
@@ -58,7 +55,7 @@ def look_out(
         if not seen[i]:
             away = directions[k]
             start = points[i] + lift * away
-            free = not meets(bottom, children, boxes, leaves, start, away)
+            free = not meets(tree, start, away)
             for _layer in range(LAYERS):
                 if free and not seen[i]:
                     hit = wp.mesh_query_ray(cut, start, away, FAR)
@@ -156,7 +153,7 @@ class _Covers:
         tree = self._tree if face and self._tree else Tree(vertices, self._solid)
         self._tree = tree if face else None  # what an expression moves needs no other order of triangles
         cut = _mesh(vertices, self._cut)
-        surface = [*tree.at(vertices), cut.id, self._uv, self._shown]
+        surface = [tree.at(vertices), cut.id, self._uv, self._shown]
         directions = wp.array(away, dtype=wp.vec3, device=DEVICE)
 
         def looked(some: Array) -> Array:

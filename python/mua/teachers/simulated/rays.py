@@ -37,10 +37,10 @@ MEETS = """
     const int beyond_x = 3 * N - x, beyond_y = 5 * N - y, beyond_z = 7 * N - z;
     int waiting[WAITING];
     int count = 1;
-    waiting[0] = (int)children.shape[0] - 1;
+    waiting[0] = (int)tree.children.shape[0] - 1;
     while (count > 0) {
         const int node = waiting[--count];
-        const float* __restrict box = boxes.data + node * 6 * N;
+        const float* __restrict box = tree.boxes.data + node * 6 * N;
         int met[N];
         #pragma clang loop vectorize(enable) interleave(disable)
         for (int l = 0; l < N; l++) {
@@ -54,11 +54,11 @@ MEETS = """
         }
         for (int l = 0; l < N; l++) {
             if (!met[l]) continue;
-            if (node >= bottom) {
-                waiting[count++] = children.data[node] + l;
+            if (node >= tree.bottom) {
+                waiting[count++] = tree.children.data[node] + l;
                 continue;
             }
-            const float* __restrict leaf = leaves.data + (node * N + l) * 9 * N;
+            const float* __restrict leaf = tree.leaves.data + (node * N + l) * 9 * N;
             int any = 0;
             #pragma clang loop vectorize(enable) interleave(disable)
             for (int k = 0; k < N; k++) {
@@ -83,15 +83,16 @@ for name, number in {"LANES": str(LANES), "WAITING": str(WAITING), "FAR": "1e29f
     MEETS = MEETS.replace(name, number)
 
 
+@wp.struct
+class Boxes:
+    bottom: int
+    children: wp.array[int]
+    boxes: wp.array[float]
+    leaves: wp.array[float]
+
+
 @wp.func_native(MEETS)
-def meets(
-    bottom: int,
-    children: wp.array[int],
-    boxes: wp.array[float],
-    leaves: wp.array[float],
-    origin: wp.vec3,
-    away: wp.vec3,
-) -> bool: ...
+def meets(tree: Boxes, origin: wp.vec3, away: wp.vec3) -> bool: ...
 
 
 class Tree:
@@ -103,8 +104,8 @@ class Tree:
         along = some[np.argsort(_places(vertices[some].mean(axis=1)), kind="stable")]
         self._corners = np.pad(along, ((0, -len(along) % LANES**2), (0, 0)), mode="edge").T
 
-    def at(self, vertices: Array) -> list[Any]:
-        """The first arguments of `meets` for the surface at `vertices` [V, 3]."""
+    def at(self, vertices: Array) -> Any:
+        """The `Boxes` of the surface at `vertices` [V, 3], for `meets`."""
         a, b, c = (vertices.astype(np.float32)[corners] for corners in self._corners)
         leaves = np.concatenate([a, b - a, c - a], axis=1).reshape(-1, LANES, 9).swapaxes(1, 2)
         low, high = np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
@@ -118,8 +119,12 @@ class Tree:
             children.append(below + np.arange(0, len(bounds), LANES))
             below = sum(map(len, children[:-1]))
             bounds = _around(bounds)
-        arrays = np.concatenate(children, dtype=np.int32), np.concatenate(boxes).ravel(), leaves.ravel()
-        return [len(boxes[0]), *(wp.array(one, device=DEVICE) for one in arrays)]
+        tree = Boxes()
+        tree.bottom = len(boxes[0])
+        tree.children = wp.array(np.concatenate(children, dtype=np.int32), device=DEVICE)
+        tree.boxes = wp.array(np.concatenate(boxes).ravel(), device=DEVICE)
+        tree.leaves = wp.array(leaves.ravel(), device=DEVICE)
+        return tree
 
 
 def _around(bounds: Array) -> Array:
