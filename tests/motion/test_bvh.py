@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from bvh_files import with_x_up
 from scipy.spatial.transform import Rotation
 from shared_data import SharedData
 
@@ -304,6 +305,22 @@ def test_turns_z_up_to_y_up(tmp_path: Path) -> None:
     assert "Y up" in found.notes[0]
     joints = [0, 1, 3]
     np.testing.assert_allclose(world_positions(found)[:, joints], world_positions(expected)[:, joints], atol=BOUND)
+
+
+def test_turns_x_up_to_y_up(tmp_path: Path) -> None:
+    found, as_it_was = read_bvh(write(tmp_path, with_x_up(PERSON))), read_bvh(write(tmp_path, PERSON))
+    assert found.notes == ("motion.bvh: X is up; turned to Y up.",)
+    x, y, z = np.moveaxis(world_positions(as_it_was), -1, 0)
+    np.testing.assert_allclose(world_positions(found), np.stack([-z, y, x], axis=-1), atol=BOUND)
+
+
+def test_leaves_a_sleeper_on_the_side(tmp_path: Path) -> None:
+    lying = PERSON.replace("1 9.5 -2 10 -20 30 5 6 -7 45", "9 1 -2 -90 0 0 0 0 0 0")
+    lying = lying.replace("0 9 0 0 0 0 0 0 0 0", "9 1 0 -90 0 0 0 0 0 0")
+    motion = read_bvh(write(tmp_path, lying))
+    assert motion.notes == ()
+    at = world_positions(motion)
+    assert (at[:, 3, 0] > at[:, 1, 0]).all()  # the head lies along X
 
 
 def test_turns_the_place_of_the_root_at_rest_with_the_world(tmp_path: Path) -> None:

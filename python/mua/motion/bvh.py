@@ -1,8 +1,9 @@
 """Read BVH motion: a hierarchy of offsets and Euler channels, then one row of numbers per frame.
 
 The format states neither units nor the up axis. Units are taken as the common one (metres, centimetres, millimetres,
-decimetres, inches) that give the skeleton a person's span; the up axis is Z where heads are above feet along Z, and Y
-points down, as cameras see it, where hardly a frame has the head above the feet.
+decimetres, inches) that give the skeleton a person's span; the up axis is Z where heads are above feet along Z, X where
+they are along X in the frames and in the rest pose, and Y points down, as cameras see it, where hardly a frame has the
+head above the feet.
 """
 
 from dataclasses import dataclass, replace
@@ -23,11 +24,12 @@ PERSON_SPAN = (1.7, 3.2)  # metres along the bones from fingertip to toe, child 
 TYPICAL_SPAN = 2.35
 HELD = 1e-4  # of the span: a joint whose place in its parent changes by less keeps the mean
 WHOLE_RATE = 1e-3  # relative: 0.033333 s means 30 frames per second
-MOST = 0.5  # share of frames with heads above feet along Z, rather than Y, from which on Z is up
+MOST = 0.5  # share of frames with heads above feet along Z or X, rather than Y, from which on it is up
 ON_HEAD = 0.9  # of the frames that have heads below feet: more than any handstand is of its clip
 COMMENTS = ("#", "//", ";")  # the format has none, editors and scripts write them nevertheless
 UTF_16 = (b"\xff\xfe", b"\xfe\xff")
-TO_Y_UP = {  # turns about X
+TO_Y_UP = {
+    "X is up": np.array([np.sqrt(0.5), 0, 0, np.sqrt(0.5)]),
     "Z is up": np.array([np.sqrt(0.5), -np.sqrt(0.5), 0, 0]),
     "Y is down": np.array([0.0, 1, 0, 0]),
 }
@@ -275,11 +277,20 @@ def _other_up(skeleton: Skeleton, clip: Clip) -> str:
     if not feet:
         return ""
     above = named.get("head", named["hips"])[0]
-    _, positions = skeleton.world(clip.rotations, clip.translations)
-    _, y, z = np.moveaxis(positions[:, above] - positions[:, feet].mean(axis=1), -1, 0)
+    x, y, z = np.moveaxis(_way_up(skeleton, clip.rotations, clip.translations, feet, above), -1, 0)
+    at_rest = _way_up(skeleton, skeleton.bind_rotations, skeleton.bind_translations, feet, above)
+    # a sleeper lies along X in all frames, but not in the rest pose too
+    if at_rest[0] > abs(at_rest[1:]).max() and np.mean(x > np.maximum(abs(y), abs(z))) > MOST:
+        return "X is up"
     if np.mean(z > abs(y)) > MOST:
         return "Z is up"
     return "Y is down" if np.mean(y < 0) > ON_HEAD and -y.mean() > abs(z.mean()) else ""
+
+
+def _way_up(skeleton: Skeleton, rotations: Array, translations: Array, feet: list[int], above: int) -> Array:
+    """From the middle of the feet to the joint above them [..., 3], in poses [..., J, 4 and 3]."""
+    _, positions = skeleton.world(rotations, translations)
+    return positions[..., above, :] - positions[..., feet, :].mean(axis=-2)
 
 
 def _turn(skeleton: Skeleton, clip: Clip, turn: Array) -> tuple[Skeleton, Clip]:

@@ -17,7 +17,7 @@ const PERSON_SPAN = [1.7, 3.2]; // metres along the bones from fingertip to toe,
 const TYPICAL_SPAN = 2.35;
 const HELD = 1e-4; // of the span: a joint whose place in its parent changes by less keeps the mean
 const WHOLE_RATE = 1e-3; // relative: 0.033333 s means 30 frames per second
-const MOST = 0.5; // share of frames with heads above feet along Z, rather than Y, from which on Z is up
+const MOST = 0.5; // share of frames with heads above feet along Z or X, rather than Y, from which on it is up
 const ON_HEAD = 0.9; // of the frames that have heads below feet: more than any handstand is of its clip
 const CHANNELS = ["xposition", "yposition", "zposition", "xrotation", "yrotation", "zrotation"];
 
@@ -242,16 +242,22 @@ function otherUp(/** @type {Turnable} */ { bones, frames, rotations, translation
   if (!feet.length) return null;
   const above = (named.head ?? named.hips)[0];
   const joints = bones.names.length;
-  const ways = Array.from({ length: frames }, (_, i) => {
-    const pose = {
-      rotations: rotations.subarray(4 * joints * i, 4 * joints * (i + 1)),
-      translations: translations.subarray(3 * joints * i, 3 * joints * (i + 1)),
-    };
+  const wayUp = (/** @type {import("../skeleton.js").Pose} */ pose) => {
     const { places } = world(bones, pose);
     return minus(vector(places, above), mean(feet.map((foot) => vector(places, foot))));
-  });
+  };
+  const ways = Array.from({ length: frames }, (_, i) =>
+    wayUp({
+      rotations: rotations.subarray(4 * joints * i, 4 * joints * (i + 1)),
+      translations: translations.subarray(3 * joints * i, 3 * joints * (i + 1)),
+    }),
+  );
   const share = (/** @type {(way: Vector) => boolean} */ holds) => ways.filter(holds).length / frames;
   const middle = mean(ways);
+  const alongX = (/** @type {Vector} */ [x, y, z]) => x > Math.max(Math.abs(y), Math.abs(z));
+  const atRest = wayUp({ rotations: bones.bindRotations, translations: bones.bindTranslations });
+  if (alongX(atRest) && share(alongX) > MOST)
+    return { turn: aboutAxis(2, Math.PI / 2), note: "X is up; turned to Y up." };
   if (share(([, y, z]) => z > Math.abs(y)) > MOST)
     return { turn: aboutAxis(0, -Math.PI / 2), note: "Z is up; turned to Y up." };
   const upsideDown = share(([, y]) => y < 0) > ON_HEAD && -middle[1] > Math.abs(middle[2]);
