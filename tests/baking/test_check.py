@@ -10,6 +10,7 @@ import typer
 from bvh_files import BVH
 from column_files import column_file
 from commands import Commands
+from fbx_files import figure, picture
 from PIL import Image
 from rich.console import Console
 from typer.testing import CliRunner
@@ -166,6 +167,19 @@ def test_what_is_measured_of_a_motion_is_shown_with_its_unit(capsys: pytest.Capt
     rows = [line.replace("│", " ").split() for line in capsys.readouterr().out.splitlines()]
     assert ["walk", "1.2°", "4%", "8°", "-3°", "12°", "-0.013", "m", "0.33", "m/s"] in rows
     assert ["wave", "0.0°"] in rows
+
+
+def test_a_lost_texture_is_among_what_looks_wrong(tmp_path: Path) -> None:
+    fbx, _, body = figure()
+    fbx.texture(fbx.material(body), "c:/work/Cloth_01.png")
+    hero, figures = fbx.save(tmp_path / "hero.fbx"), tmp_path / "hero.json"
+    text = run(hero, "--check", "--texels", 64, "-o", tmp_path / "hero.muaavatar", "--json", figures)
+    found = json.loads(figures.read_text())
+    assert "in one colour (put them beside the file): Cloth_01.png." in found["warnings"][0]
+    assert not any("Cloth_01" in note for note in found["notes"])
+    assert text.index("Look at this: Textures that are neither in the file nor beside it") == text.index("Look at this")
+    (tmp_path / "cloth_01.png").write_bytes(picture((10, 60, 200, 255)))
+    assert "Cloth_01" not in run(hero, "--check", "--texels", 64, "-o", tmp_path / "hero.muaavatar")
 
 
 def test_leaves_names_of_expressions_to_correct(tmp_path: Path) -> None:

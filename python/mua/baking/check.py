@@ -15,6 +15,7 @@ from mua.baking.listener import Listener
 from mua.baking.settings import BakeSettings
 from mua.baking.sources import clips_of, faced, load_baked_character
 from mua.characters.expression_file import write_expression_names
+from mua.characters.messages import LOST, is_about
 from mua.errors import InputError
 from mua.fidelity import report
 from mua.fidelity.compare import Fidelity, compare
@@ -77,6 +78,8 @@ def _check(
     clips, of_face = faced(character, clips, settings.face)
     fidelity, warnings = fidelity_of(character, clips, texels=settings.student.texels, faces=faces)
     pairs, unmatched = _matched(character, loaded) if settings.motions else ((), ())
+    lost = [note for note in character.notes if is_about(note, LOST)]
+    noted = [note for note in character.notes if note not in lost]
     written = []
     if fidelity is not None:
         written.append(settings.beside("_check.png"))
@@ -95,9 +98,10 @@ def _check(
         motions=qualities,
         matched=pairs,
         unmatched=unmatched,
-        notes=counted((*character.notes, *made, *_notes(loaded), *of_face), clips),
+        notes=counted((*noted, *made, *_notes(loaded), *of_face), clips),
         warnings=(
             *_refusals(settings, character, loaded),
+            *lost,
             *warnings,
             *(flaw for quality in qualities for flaw in quality.flaws),
         ),

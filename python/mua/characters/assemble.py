@@ -16,7 +16,7 @@ from mua.characters.expression_file import with_expression_names
 from mua.characters.expressions import fingerprints, joined_targets, unfolding, with_weights
 from mua.characters.facing import AS_SHOWN, Facing, turn_about_y
 from mua.characters.gaze import GAZE, with_gaze
-from mua.characters.messages import UNHELD, Messages
+from mua.characters.messages import UNHELD, Messages, is_about
 from mua.characters.outline import outlines
 from mua.characters.rigid_skeleton import rigid_skeleton, roles_of
 from mua.characters.smplx import with_pairs, with_smplx
@@ -69,7 +69,7 @@ def assemble(
     """
     scene = with_alphas(without(scene, leave_out, path), alphas, path)
     if not any(len(part.faces) for part in scene.parts):
-        still = any(note.startswith(UNHELD.partition("{")[0]) for note in scene.notes)
+        still = any(is_about(note, UNHELD) for note in scene.notes)
         advice = "; add a skeleton in Blender or with Mixamo" if still else ""
         raise InputError(f"{path}: no skinned mesh with triangles was found, expected a rigged character{advice}")
     scene = without_collapsed(scene, path)

@@ -3,7 +3,16 @@
 from collections.abc import Sequence
 
 UNHELD = "Meshes that no joint moves are left out: {}."
+LOST = (
+    "Textures that are neither in the file nor beside it nor in its folder textures/, so that the parts they cover are "
+    "drawn in one colour (put them beside the file): {}."
+)
 SHOWN = 8  # names that a sentence lists before it counts the rest
+
+
+def is_about(note: str, sentence: str) -> bool:
+    """Whether a note is this sentence with some names."""
+    return note.startswith(sentence.partition("{")[0])
 
 
 class Messages:

@@ -13,11 +13,10 @@ from mua.atlas import pictures
 from mua.characters.alpha import with_stated_opacity
 from mua.characters.fbx.bindings import get, items
 from mua.characters.fbx.textures import file_name, read_picture
-from mua.characters.messages import Messages
+from mua.characters.messages import LOST, Messages
 from mua.scene import Material, Wrap
 
 WRAPS: dict[int, Wrap] = {int(ufbx.WrapMode.REPEAT): "repeat", int(ufbx.WrapMode.CLAMP): "clamp"}
-LOST = "Textures that are not in the file, beside it or in its folder textures/, so that a plain colour is drawn: {}."
 OPACITY = ("pbr.opacity", "fbx.transparency_color", "fbx.transparency_factor")  # properties with a picture of it
 BASE = re.compile("^(?!.*cube).*(diffuse|albedo|base_?colou?r|main_?tex)", re.IGNORECASE)  # a cube is of the light
 GREY = np.array([0.6, 0.6, 0.6, 1.0])  # linear colour of a material that states none
