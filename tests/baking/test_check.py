@@ -182,6 +182,15 @@ def test_a_lost_texture_is_among_what_looks_wrong(tmp_path: Path) -> None:
     assert "Cloth_01" not in run(hero, "--check", "--texels", 64, "-o", tmp_path / "hero.muaavatar")
 
 
+def test_a_figure_of_one_colour_that_has_places_for_pictures_looks_wrong(tmp_path: Path) -> None:
+    says = "Look at this: The whole character is drawn in one colour"
+    output = tmp_path / "a.muaavatar"
+    assert says in run(gltf_files.body().save(tmp_path / "bare.glb"), "--check", "--texels", 64, "-o", output)
+    clay = gltf_files.body(TEXCOORD_0=None).save(tmp_path / "clay.glb")
+    assert says not in run(clay, "--check", "--texels", 64, "-o", output)
+    assert says not in run(column_file(tmp_path), "--check", "--texels", 64, "-o", output)
+
+
 def test_leaves_names_of_expressions_to_correct(tmp_path: Path) -> None:
     character, output = tmp_path / "hero.glb", tmp_path / "a.muaavatar"
     lean = np.where(gltf_files.POINTS[:, 1:2] > 1, [[0.1, 0, 0]], 0)

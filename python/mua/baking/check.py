@@ -15,7 +15,7 @@ from mua.baking.listener import Listener
 from mua.baking.settings import BakeSettings
 from mua.baking.sources import clips_of, faced, load_baked_character
 from mua.characters.expression_file import write_expression_names
-from mua.characters.messages import LOST, is_about
+from mua.characters.messages import LOOKS_WRONG, is_about
 from mua.errors import InputError
 from mua.fidelity import report
 from mua.fidelity.compare import Fidelity, compare
@@ -78,8 +78,8 @@ def _check(
     clips, of_face = faced(character, clips, settings.face)
     fidelity, warnings = fidelity_of(character, clips, texels=settings.student.texels, faces=faces)
     pairs, unmatched = _matched(character, loaded) if settings.motions else ((), ())
-    lost = [note for note in character.notes if is_about(note, LOST)]
-    noted = [note for note in character.notes if note not in lost]
+    doubtful = [note for note in character.notes if any(is_about(note, sentence) for sentence in LOOKS_WRONG)]
+    noted = [note for note in character.notes if note not in doubtful]
     written = []
     if fidelity is not None:
         written.append(settings.beside("_check.png"))
@@ -101,7 +101,7 @@ def _check(
         notes=counted((*noted, *made, *_notes(loaded), *of_face), clips),
         warnings=(
             *_refusals(settings, character, loaded),
-            *lost,
+            *doubtful,
             *warnings,
             *(flaw for quality in qualities for flaw in quality.flaws),
         ),

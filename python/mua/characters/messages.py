@@ -10,6 +10,13 @@ LOST = (
 SHOWN = 8  # names that a sentence lists before it counts the rest
 
 
+PLAIN = (
+    "The whole character is drawn in one colour: its surface has texture coordinates, but no material has a picture. "
+    "Export it again with its textures, if it should have some. Materials: {}."
+)
+LOOKS_WRONG = (LOST, PLAIN)  # what anybody should look at before a bake
+
+
 def is_about(note: str, sentence: str) -> bool:
     """Whether a note is this sentence with some names."""
     return note.startswith(sentence.partition("{")[0])
