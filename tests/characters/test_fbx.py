@@ -7,7 +7,7 @@ import fbx_files
 import numpy as np
 import pytest
 from fbx_files import Fbx, binds, figure, layer, skeleton, skinned
-from gltf_files import POINTS, TRIANGLES, Glb, animate, assert_is_column, body, posed
+from gltf_files import BONES, POINTS, TRIANGLES, Glb, animate, assert_is_column, body, posed
 from gltf_files import read as read_glb
 
 from mua import rotation
@@ -337,14 +337,26 @@ def test_a_figure_without_a_skeleton_is_refused(tmp_path: Path) -> None:
         read_surfaces(fbx.save(tmp_path / "statue.fbx"))
 
 
-def test_a_weight_of_a_vertex_that_is_not_there_is_refused(tmp_path: Path) -> None:
+def with_stray_weights(count: int) -> Fbx:
+    """The column, whose skin has weights of `count` vertices more than the mesh has."""
     fbx = Fbx()
     bones = skeleton(fbx)
-    weights = np.zeros((len(POINTS) + 5, 3))
-    weights[:, 0] = 1
+    weights = np.concatenate([np.eye(3)[BONES], np.tile([1.0, 0, 0], (count, 1))])
     fbx.skin(fbx.mesh(fbx.model("body", "Mesh"), POINTS), bones, binds(fbx), weights=weights)
+    return fbx
+
+
+def test_the_skin_of_another_mesh_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"mesh body: the cluster of hips has weights for vertex 20, of 16 vertices"):
-        read_surfaces(fbx.save(tmp_path / "body.fbx"))
+        read_surfaces(with_stray_weights(5).save(tmp_path / "body.fbx"))
+
+
+def test_a_stray_weight_is_left_out_with_a_note(tmp_path: Path) -> None:
+    read, sound = (read_surfaces(with_stray_weights(count).save(tmp_path / "body.fbx")) for count in (1, 0))
+    assert "Weights of vertices that the mesh does not have are left out, of meshes: body." in read.notes
+    assert not any("left out" in note for note in sound.notes)
+    np.testing.assert_array_equal(read.skin_indices, sound.skin_indices)
+    np.testing.assert_array_equal(read.skin_weights, sound.skin_weights)
 
 
 def test_a_stack_of_years_is_refused(tmp_path: Path) -> None:

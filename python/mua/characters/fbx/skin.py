@@ -13,6 +13,8 @@ from mua.characters.messages import Messages
 from mua.errors import InputError
 from mua.scene import Skin
 
+STRAY = "Weights of vertices that the mesh does not have are left out, of meshes: {}."
+MOST_STRAY = 0.1  # share of such weights; with more, another mesh was skinned
 LINEAR = (int(ufbx.SkinningMethod.LINEAR), int(ufbx.SkinningMethod.RIGID))
 
 
@@ -47,7 +49,8 @@ def read_skin(geometry: Geometry, node: int, nodes: Nodes, messages: Messages) -
         raise InputError(f"{geometry.where}: the cluster of {name} has a bind matrix that cannot be inverted")
     _note_method(geometry, messages)
     influences = [_influences(cluster, j, geometry) for j, (cluster, _) in enumerate(clusters)]
-    joints, weights = _by_vertex(np.concatenate(influences), len(geometry.positions))
+    kept = _without_strays(np.concatenate(influences), clusters, geometry, messages)
+    joints, weights = _by_vertex(kept, len(geometry.positions))
     bones = [bone for _, bone in clusters]
     bare = ~weights.any(axis=1)
     if bare.any():
@@ -74,11 +77,24 @@ def _influences(cluster: Any, joint: int, geometry: Geometry) -> Array:
     """Rows [n, 3] of vertex, joint and weight."""
     vertices, weights = array(cluster, "vertices").ravel(), array(cluster, "weights").ravel()
     where = f"{geometry.where}: the cluster of {get(cluster, 'bone_node.name')}"
-    if vertices.max(initial=-1) >= len(geometry.positions):
-        raise InputError(f"{where} has weights for vertex {vertices.max()}, of {len(geometry.positions)} vertices")
     if len(vertices) != len(weights) or not np.isfinite(weights).all():
         raise InputError(f"{where} has {len(weights)} weights for {len(vertices)} vertices, expected a finite one each")
     return np.stack([vertices, np.full(len(vertices), joint), weights], axis=1)[weights > 0]
+
+
+def _without_strays(
+    influences: Array, clusters: list[tuple[Any, int]], geometry: Geometry, messages: Messages
+) -> Array:
+    """Rows [n, 3] as `_influences` has them, of vertices that are there: cutting a mesh up leaves others behind."""
+    count = len(geometry.positions)
+    strays = influences[influences[:, 0] >= count]
+    if len(strays) > MOST_STRAY * len(influences):
+        vertex, joint = strays[strays[:, 0].argmax(), :2].astype(int)
+        where = f"{geometry.where}: the cluster of {get(clusters[joint][0], 'bone_node.name')}"
+        raise InputError(f"{where} has weights for vertex {vertex}, of {count} vertices")
+    if len(strays):
+        messages.add(STRAY, geometry.name)
+    return influences[influences[:, 0] < count]
 
 
 def _by_vertex(influences: Array, count: int) -> tuple[Array, Array]:
