@@ -10,6 +10,7 @@ from mua.capture.capture import Capture
 from mua.capture.diagnose import misplaced_tracks, remarks, unlikely
 from mua.capture.fit import Posed, Seen, chosen_frames, look_at, mean_overlap
 from mua.capture.inventory import missing_files
+from mua.capture.unseen import unseen_surface
 from mua.errors import InputError
 
 
@@ -65,6 +66,7 @@ def check_capture(capture: Capture, *, frames: int | None = None) -> Checked:
     views = _views(capture, posed, frames, problems)
     problems += unlikely(capture, posed, views)
     problems += misplaced_tracks(capture, posed)
+    noted = remarks(views, fits=not problems) + ([] if problems else unseen_surface(capture, posed, views))
     person = [vertices.mean(axis=(0, 1)) for vertices in posed.vertices.values()]
     cameras = tuple(
         CameraFit(
@@ -74,9 +76,7 @@ def check_capture(capture: Capture, *, frames: int | None = None) -> Checked:
         )
         for camera in capture.cameras
     )
-    return Checked(
-        capture, cameras, tuple(problems), tuple(remarks(views, fits=not problems)), capture.surfaces.notes, posed
-    )
+    return Checked(capture, cameras, tuple(problems), tuple(noted), capture.surfaces.notes, posed)
 
 
 def _posed(capture: Capture, problems: list[str]) -> Posed:
