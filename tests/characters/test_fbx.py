@@ -306,6 +306,8 @@ def test_motion_without_a_mesh_has_all_joints(tmp_path: Path) -> None:
     (motion,) = read_motion(fbx.save(tmp_path / "bend.fbx"))
     assert motion.skeleton.names == fbx_files.JOINTS
     assert (motion.clip.name, len(motion.clip.rotations)) == ("bend", FRAMES)
+    with pytest.raises(InputError, match=r"no skinned mesh .* if it holds motion alone, give it with --motion"):
+        read_surfaces(tmp_path / "bend.fbx")
 
 
 @pytest.mark.parametrize("kind", ["fbx", "glb"])

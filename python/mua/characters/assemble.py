@@ -69,8 +69,9 @@ def assemble(
     """
     scene = with_alphas(without(scene, leave_out, path), alphas, path)
     if not any(len(part.faces) for part in scene.parts):
-        still = any(is_about(note, UNHELD) for note in scene.notes)
-        advice = "; add a skeleton in Blender or with Mixamo" if still else ""
+        advice = "" if scene.parts else "; if it holds motion alone, give it with --motion beside a character"
+        if any(is_about(note, UNHELD) for note in scene.notes):
+            advice = "; add a skeleton in Blender or with Mixamo"
         raise InputError(f"{path}: no skinned mesh with triangles was found, expected a rigged character{advice}")
     scene = without_collapsed(scene, path)
     scene = replace(scene, parts=tuple(replace(part, weights=weighted(part.weights)) for part in scene.parts))
