@@ -5,12 +5,15 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Unpack
 
+import numpy as np
+
 from mua.asset.storable import require_names
 from mua.atlas.detail import Detail, UvMode
 from mua.atlas.surfaces import Surfaces
 from mua.baking.settings import BakeSettings
 from mua.characters.facing import AS_SHOWN
 from mua.characters.figure_size import AS_FOUND, FigureSize
+from mua.characters.messages import LOST, PLAIN, is_about, listed
 from mua.characters.read import Reading, read_character
 from mua.errors import InputError
 from mua.motion.face import with_face
@@ -47,7 +50,22 @@ def load_baked_character(
         expression_names=settings.expression_names,
         smplx=settings.smplx,
     )
+    character = replace(character, notes=(*_one_coloured(character), *character.notes))
     return character if settings.motion_range == "none" else _without_still_clips(character)
+
+
+def _one_coloured(character: Character) -> tuple[str, ...]:
+    """A sentence where a character of a single colour has places for pictures, but none, and none is known as lost."""
+    if character.source is None or any(is_about(note, LOST) for note in character.notes):
+        return ()
+    scene = character.source.scene
+    used = sorted({part.material for part in scene.parts if len(part.faces)})
+    materials = [scene.materials[m] for m in used]
+    pictured = any(material.image.shape[:2] != (1, 1) for material in materials)
+    placed = any((part.uv_faces >= 0).any() for part in scene.parts)
+    if pictured or not placed or np.ptp(character.base_color, axis=(0, 1)).any():
+        return ()
+    return (PLAIN.format(listed([material.name for material in materials])),)
 
 
 def _without_still_clips(character: Character) -> Character:

@@ -16,7 +16,7 @@ from mua.characters.expression_file import with_expression_names
 from mua.characters.expressions import fingerprints, joined_targets, unfolding, with_weights
 from mua.characters.facing import AS_SHOWN, Facing, turn_about_y
 from mua.characters.gaze import GAZE, with_gaze
-from mua.characters.messages import LOST, PLAIN, UNHELD, Messages, is_about, listed
+from mua.characters.messages import UNHELD, Messages, is_about
 from mua.characters.outline import outlines
 from mua.characters.rigid_skeleton import rigid_skeleton, roles_of
 from mua.characters.smplx import with_pairs, with_smplx
@@ -122,7 +122,6 @@ def assemble(
         roles=roles_of(scene, rigged),
         notes=(
             *scene.notes,
-            *_one_coloured(scene, mesh, shown),
             *_rigid_parts(scene),
             *size_notes,
             *change.notes,
@@ -152,18 +151,6 @@ def _middles(mesh: _Mesh, joints: int) -> Array:
     sums = np.stack([np.bincount(indices, weights * column, minlength=joints) for column in points.T], axis=-1)
     with np.errstate(invalid="ignore"):
         return np.asarray(sums / mass[:, None])
-
-
-def _one_coloured(scene: Scene, mesh: _Mesh, shown: Array) -> tuple[str, ...]:
-    """A sentence where the materials that are shown have one colour together, though the mesh could have pictures."""
-    materials = [scene.materials[m] for m in shown]
-    colors = {material.image[0, 0].tobytes() for material in materials if material.image.shape[:2] == (1, 1)}
-    pictured = any(material.image.shape[:2] != (1, 1) for material in materials)
-    if pictured or len(colors) > 1 or (mesh.colors != 1).any() or (mesh.uv_faces < 0).all():
-        return ()
-    if any(is_about(note, LOST) for note in scene.notes):
-        return ()
-    return (PLAIN.format(listed([material.name for material in materials])),)
 
 
 def _is_plain(image: Array) -> bool:
