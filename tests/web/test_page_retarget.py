@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from bvh_files import with_x_up
 from gltf_files import Glb, animate
 from named_figures import written_names
 from people import hung_on_the_spine, lying, moving, on_thick_soles, person, walk
@@ -93,15 +92,6 @@ def test_real_motion_is_retargeted_as_the_package_does(
     assert_same(found, loaded.clip)
     assert found["name"] == path.stem
     assert set(found["notes"]) <= {*loaded.notes, *(note.removeprefix(f"{path.name}: ") for note in loaded.notes)}
-
-
-def test_motion_with_x_up_is_turned_as_the_package_does(tmp_path: Path, woman: Skeleton) -> None:
-    path = tmp_path / "x_up.bvh"
-    path.write_text(with_x_up(SharedData().path("motion/cmu/01_01.bvh").read_text()))
-    [loaded] = load_motions(path, woman, mapping=None, rate=RATE, feet="keep")
-    found = browser_clip(tmp_path, woman, path)
-    assert "X is up; turned to Y up." in found["notes"]
-    assert_same(found, loaded.clip)
 
 
 def animated(skeleton: Skeleton, clip: Clip, names: dict[str, str] | None = None) -> Glb:
