@@ -88,7 +88,7 @@ def test_a_camera_in_the_middle_of_the_head_sees_a_picture() -> None:
     top = SPLATS.centres[SPLATS.centres[:, 1].argmax()]
     view = np.eye(4, dtype=np.float32)
     view[:3, 3] = -top
-    camera = mua.Camera(view, perspective(0.9, aspect=1), (np.int64(24), 24))
+    camera = mua.Camera(view, perspective(0.9, aspect=1), (np.int64(24), 24))  # type: ignore[arg-type]
     assert np.asarray(mua.render(SPLATS, camera)).shape == (24, 24, 3)
 
 

@@ -93,7 +93,8 @@ def test_scripts_and_calls_compile(csharp: CSharp, tmp_path: Path) -> None:
     calls = sorted(set(CALLS.findall(GUIDE)))
     assert (len(shown), len(calls)) == (2, 9)
     component, loading = shown
-    given = "string name = null, avatarJoint = null, rigJoint = null; float weight = 0; byte[] bytes = null; AvatarAsset asset = null;"
+    given = "string name = null, avatarJoint = null, rigJoint = null; float weight = 0; byte[] bytes = null;"
+    given += "AvatarAsset asset = null;"
     owner = {"Map": "rig.", "TakeRest": "rig.", "AddComponent": "gameObject."}
     said = [f"{owner.get(re.split(r'[(<]', call)[0], '')}{call};" for call in calls]
     parts = [

@@ -125,7 +125,7 @@ def bake(
         Direction | None,
         Option(
             "Direction in which the character faces in its file, Y up: +x, -x, +z or -z.",
-            default="recognised from its joints",
+            default="recognised from its body and motion",
         ),
     ] = None,
     turn: Annotated[
