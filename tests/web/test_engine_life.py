@@ -101,6 +101,7 @@ DISPOSED = "The player was disposed of; create another one."
             "avatar.setPose({ rotations: 3 })",
             "setPose: rotations: expected numbers, of all joints or by name, found 3.",
         ),
+        ("avatar.setExpressions(0.5)", "setExpressions: expected weights by name, found 0.5."),
         ("(player.canvas.height = 0, player.screenshot())", "There is no picture of 0 x 0 pixels; give the canvas"),
         ("(player.dispose(), player.load('a.muaavatar'))", DISPOSED),
         ("(player.dispose(), player.screenshot())", DISPOSED),
