@@ -19,7 +19,7 @@ PathLike: TypeAlias = str | os.PathLike[str]
 
 def as_path(path: PathLike, name: str) -> Path:
     """The path that argument `name` gives; raises InputError for anything but a str or os.PathLike."""
-    if isinstance(path, str | os.PathLike) and isinstance(text := os.fspath(path), str) and "\0" not in text:
+    if isinstance(path, str | os.PathLike) and isinstance(text := os.fspath(path), str) and text and "\0" not in text:
         return Path(text)
     raise InputError(f"{name} is {describe(path)}; expected a path, as a str or an os.PathLike")
 

@@ -1,5 +1,6 @@
 """The reader trusts nothing: every way to be wrong ends in one FormatError with its code and field."""
 
+import re
 import tracemalloc
 from collections.abc import Callable
 from contextlib import nullcontext
@@ -54,6 +55,26 @@ def test_truncation_of_a_file_for_the_network_is_refused(network: bytes) -> None
     """At every offset of the first stage, where all tables are; behind it at one in 29, as each parses them all."""
     first = int(parse(network)["stages"][0])
     assert all(refused(network[:length]) for length in (*range(first), *range(first, len(network), 29)))
+
+
+@pytest.mark.parametrize("length", [3, 900, 0.2, 0.5, 0.99, -20])
+def test_a_cut_file_says_how_many_bytes_it_had(network: bytes, content: bytes, length: float) -> None:
+    """A file for the network states its size; another at least what it needs, within its name of all."""
+    for whole in (network, content):
+        size = int(length * len(whole)) if 0 < length < 1 else int(length) % len(whole)
+        with pytest.raises(FormatError) as caught:
+            decode(whole[:size])
+        found = re.fullmatch(
+            rf"the file has {size} bytes and needs at least (\d+): it is cut short or damaged; "
+            "download or copy it again",
+            str(caught.value),
+        )
+        assert found
+        assert (caught.value.code, caught.value.field) == ("truncated", "")
+        assert length == 3 or size < int(found[1]) <= len(whole)
+        assert (
+            length in {3, 900} or int(found[1]) == len(whole) or (whole is content and int(found[1]) > len(whole) - 64)
+        )
 
 
 def test_every_single_bit_flip_of_the_header_is_refused(content: bytes) -> None:
@@ -141,7 +162,7 @@ def test_a_third_barycentric_that_rounding_makes_negative_is_none(content: bytes
 def test_sentence_names_the_file(tmp_path: Path) -> None:
     path = tmp_path / "broken.muaavatar"
     path.write_bytes(b"no avatar at all")
-    with pytest.raises(InputError, match=r"broken\.muaavatar: the file identifier is"):
+    with pytest.raises(InputError, match=r"broken\.muaavatar: the file is no \.muaavatar"):
         read(path)
     with pytest.raises(InputError, match=r"absent\.muaavatar"):
         read(tmp_path / "absent.muaavatar")

@@ -17,7 +17,7 @@ from mua.baking.settings import BakeSettings
 from mua.student.settings import PRESETS
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "python.md"
-READING, BAKING, TRAINING, _ = python_blocks(PAGE)
+READING, CAMERA, BAKING, TRAINING, _ = python_blocks(PAGE)
 LINES = 10  # most lines of the first example
 
 
@@ -34,7 +34,9 @@ def test_the_example_reads_decodes_draws_and_saves(
     monkeypatch.chdir(tmp_path)
     avatar = walking_avatar()
     mua.save("hero.muaavatar", avatar)
-    exec(READING, {})
+    names: dict[str, object] = {}
+    exec(READING, names)
+    exec(CAMERA, names)
     printed = capsys.readouterr().out.splitlines()
     assert printed[0] == repr(avatar)
     assert printed[1] == f"{avatar.clips!r}"
@@ -42,6 +44,8 @@ def test_the_example_reads_decodes_draws_and_saves(
         assert (hero.size, standing.size) == ((480, 720), (640, 960))
         assert np.asarray(hero).std() > 0
         assert standing.getpixel((0, 0)) == (0x20, 0x20, 0x20)
+    with Image.open("head.png") as head:
+        assert head.size == (512, 512)
     assert mua.load("hero_small.muaavatar").name == avatar.name
     assert len([line for line in READING.splitlines() if line and not line.startswith("import")]) <= LINES
 

@@ -55,3 +55,12 @@ def test_scene_of_another_program_is_refused_with_the_way_to_convert_it(tmp_path
     for read in (read_surfaces, read_motion):
         with pytest.raises(InputError, match=rf"open it in {tool} and export it as glTF 2\.0"):
             read(path)
+
+
+@pytest.mark.parametrize("name", ["hero.muaavatar", "HERO.MUAAVATAR"])
+def test_an_avatar_in_place_of_a_character_or_motion_is_named(tmp_path: Path, name: str) -> None:
+    path = tmp_path / name
+    path.write_bytes(b"anything")
+    for read in (read_surfaces, read_motion):
+        with pytest.raises(InputError, match="is an avatar already; mua-view shows it"):
+            read(path)

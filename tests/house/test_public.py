@@ -11,7 +11,8 @@ import pytest
 from synthetic_avatar import synthetic_avatar
 
 import mua
-from mua.avatar.decode import decode_clip_frame
+from mua.avatar.camera import orbit, perspective
+from mua.avatar.decode import box_of, decode_clip_frame
 from mua.baking import pipeline
 from mua.baking.listener import Listener
 from mua.baking.settings import BakeSettings
@@ -82,6 +83,15 @@ def test_a_picture_shows_all_splats_on_the_background() -> None:
     assert (picture != [255, 0, 0]).any()
 
 
+def test_a_camera_in_the_middle_of_the_head_sees_a_picture() -> None:
+    """A user's camera, of float32 and with a size of numpy's numbers."""
+    top = SPLATS.centres[SPLATS.centres[:, 1].argmax()]
+    view = np.eye(4, dtype=np.float32)
+    view[:3, 3] = -top
+    camera = mua.Camera(view, perspective(0.9, aspect=1), (np.int64(24), 24))  # type: ignore[arg-type]
+    assert np.asarray(mua.render(SPLATS, camera)).shape == (24, 24, 3)
+
+
 def test_a_picture_turns_with_the_azimuth_in_degrees() -> None:
     front, left, back = (np.asarray(mua.render(SPLATS, size=(32, 32), azimuth=turn)) for turn in (0, 90, 360))
     np.testing.assert_array_equal(front, back)
@@ -92,6 +102,10 @@ def _turned(scale: float = 1.0, **changes: Any) -> mua.Clip:
     return replace(WAVE, rotations=scale * WAVE.rotations, **changes)
 
 
+def _seen(**changed: Any) -> mua.Camera:
+    return replace(orbit(box_of(SPLATS.centres), screen=(16, 16)), **changed)
+
+
 WRONG: dict[str, tuple[Callable[[], object], str]] = {
     "a number as path": (lambda: mua.load(3), r"path is 3 \(int\); expected a path, as a str or an os\.PathLike"),  # type: ignore[arg-type]
     "bytes as path": (lambda: mua.load(b"a"), "expected a path, as a str"),  # type: ignore[arg-type]
@@ -99,6 +113,11 @@ WRONG: dict[str, tuple[Callable[[], object], str]] = {
     "no such file": (lambda: mua.load("none.muaavatar"), r"none\.muaavatar: No such file"),
     "storage": (lambda: mua.save("a", AVATAR, storage="f8"), "storage is 'f8'; expected f32 or f16 or i8"),  # type: ignore[arg-type]
     "no avatar to save": (lambda: mua.save("a", "b"), "avatar is 'b'; expected a mua.Avatar"),  # type: ignore[arg-type]
+    "an empty path": (lambda: mua.load(""), "path is ''; expected a path, as a str"),
+    "weights without names": (
+        lambda: AVATAR.decode("wave", expressions=[0.5]),  # type: ignore[arg-type]
+        r"expressions is \[0\.5\] \(list\); expected weights by name",
+    ),
     "clip name": (lambda: AVATAR.decode("jump"), "clip is 'jump'; the avatar holds 'wave'"),
     "no clip": (lambda: AVATAR.decode(7), r"clip is 7 \(int\); expected a clip's name"),  # type: ignore[arg-type]
     "frame too late": (lambda: AVATAR.decode("wave", 10**6), "frame is 1000000; clip 'wave' has frames 0 to"),
@@ -129,6 +148,8 @@ WRONG: dict[str, tuple[Callable[[], object], str]] = {
         "elements of type .*, expected real numbers",
     ),
     "a clip without frames": (lambda: AVATAR.decode(WAVE.cut(slice(0))), "clip 'wave' has no frames"),
+    "a clip at rest": (lambda: AVATAR.decode(replace(WAVE, rate=0)), "rate of clip 'wave' is 0; expected 1 to 1000"),
+    "no rate": (lambda: AVATAR.decode(replace(WAVE, rate=np.nan)), "rate of clip 'wave': a value is not finite"),
     "no splats": (lambda: mua.render(WAVE), "splats is <mua.Clip .*; expected what Avatar.decode returns"),  # type: ignore[arg-type]
     "colour": (lambda: mua.render(SPLATS, background="whitish"), "background is 'whitish'; expected a colour name"),
     "number as colour": (lambda: mua.render(SPLATS, background=3), r"background is 3 \(int\)"),  # type: ignore[arg-type]
@@ -136,6 +157,23 @@ WRONG: dict[str, tuple[Callable[[], object], str]] = {
     "empty image": (lambda: mua.render(SPLATS, size=(0, 64)), "expected sides of 1 to 8192 pixels"),
     "angle": (lambda: mua.render(SPLATS, azimuth=np.inf), "azimuth: a value is not finite"),
     "no camera": (lambda: mua.render(SPLATS, "front"), "camera is 'front'; expected a mua.Camera"),  # type: ignore[arg-type]
+    "view of three rows": (
+        lambda: mua.render(SPLATS, _seen(view=np.eye(3))),
+        r"view of the camera: the shape is \[3, 3\]",
+    ),
+    "view that is none": (lambda: mua.render(SPLATS, _seen(view=np.full((4, 4), np.nan))), "a value is not finite"),
+    "view that scales": (
+        lambda: mua.render(SPLATS, _seen(view=np.diag([2.0, 2, 2, 1]))),
+        "view of the camera: expected a rotation and a translation",
+    ),
+    "no perspective": (
+        lambda: mua.render(SPLATS, _seen(projection=np.eye(4))),
+        "projection of the camera: expected a perspective",
+    ),
+    "empty screen": (
+        lambda: mua.render(SPLATS, _seen(screen=(0, 0))),
+        "screen of the camera is .*; expected sides of 1",
+    ),
     "camera and angle": (
         lambda: mua.render(SPLATS, mua.Camera(np.eye(4), np.eye(4), (64, 64)), azimuth=3),
         "camera is given together with size, azimuth or elevation",

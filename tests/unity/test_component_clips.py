@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from component import RATE, SECOND, Story
+from component import RATE, SECOND, Story, counts
 from frame_bounds import FEWER_THAN, FRAME_ORDER
 from synthetic_avatar import synthetic_avatar
 from training import outside_of_training
@@ -40,6 +40,16 @@ def test_an_application_chooses_clip_frame_and_speed(story: Story, folder: Path)
     missing = f"the avatar has no clip nobody's; its clips are {clip.name}, shorter, later."
     assert reported["picked"] == [f"0 {missing}", "2 "]
     assert [line.rpartition(": ")[2] for line in reported["log"]] == [missing]
+
+
+def test_numbers_and_names_that_mean_nothing_leave_a_clip_that_plays(story: Story) -> None:
+    """Python and the browser refuse or ignore the same: a moment that is no number is the clip's first."""
+    reported = story("IsMisused", "first")
+    assert set(reported["moment"]) == {"True"}
+    assert float(reported["plays"][0]) == pytest.approx(36 / SECOND)
+    assert reported["splats"] == [str(counts(1)[0])] * 2
+    assert reported["loaded"] == [*["Empty False False"] * 2, *["Failed True False"] * 2, "Empty False False"]
+    assert reported["destroyed"] == ["Empty 0 0"]
 
 
 def test_an_avatar_says_how_far_outside_of_training_its_pose_is(story: Story, folder: Path) -> None:

@@ -83,7 +83,7 @@ def test_a_weight_that_changes_decodes_once_and_weights_of_0_cost_nothing(told: 
 
 
 def test_names_that_the_avatar_lacks_and_weights_that_are_no_numbers(told: Reports) -> None:
-    assert (told["early"], told["unknown"], told["set"]) == (["False 0 0"], ["False 0"], ["True"] * 2)
+    assert (told["early"], told["unknown"], told["set"]) == (["False 0 0"], ["False 0"] * 2, ["True"] * 2)
     nan, infinite = told["refused"]
     assert nan.startswith("the weight of the expression jawOpen is NaN, expected a finite number")
     assert "Infinity" in infinite

@@ -1,12 +1,15 @@
-"""docs/unity.md names what the compiled package has: menus, fields, members, messages; and files of the repository."""
+"""docs/unity.md names what the compiled package has: menus, fields, members, messages; its scripts compile."""
 
 import re
+from pathlib import Path
 
 import pytest
-from csharp import ROOT
+from csharp import ROOT, CSharp
+from package_compiler import Compiler
 from package_content import Content
 
 GUIDE = (ROOT / "docs" / "unity.md").read_text()
+PAGES = GUIDE + (ROOT / "docs" / "research" / "unity.md").read_text()
 
 MENU = re.compile(r"\*\*((?:MUA|GameObject) > [^*]+)\*\*")
 FIELD = re.compile(r"^\| ([A-Z]\w+(?: [A-Z]\w+)*) \| ", re.MULTILINE)
@@ -15,6 +18,39 @@ COMMAND = re.compile(r"Mua\.Editor\.\w+\.\w+")
 WORD = re.compile(r"(?<!\w)(-mua[A-Z]\w+|MUA-[A-Z]+(?: [A-Z]+)?)")
 MARKER = re.compile(r"`(MUA [a-z ]+)`")
 COMPONENT = "Mua.AvatarRenderer."
+SCRIPT = re.compile(r"(?:^ {4}.*\n|^\n(?= {4}))+", re.MULTILINE)
+CALLS = re.compile(r"`((?:avatar\.)?[A-Z]?\w+(?:<\w+>)?\([^`)]*\))`")
+FRAME = """
+using System.Collections; using Mua; using UnityEngine;
+using UnityEngine.AddressableAssets; using UnityEngine.ResourceManagement.AsyncOperations;
+
+namespace UnityEngine.ResourceManagement.AsyncOperations
+{
+    public enum AsyncOperationStatus { None, Succeeded, Failed }
+    public struct AsyncOperationHandle<T> { public AsyncOperationStatus Status => default; public T Result => default; }
+}
+
+namespace UnityEngine.AddressableAssets
+{
+    public static class Addressables
+    {
+        public static AsyncOperationHandle<T> LoadAssetAsync<T>(object key) => default;
+        public static void Release<T>(AsyncOperationHandle<T> handle) {}
+    }
+}
+
+namespace UnityEngine
+{
+    public class AssetBundleRequest : AsyncOperation { public Object asset => null; }
+    public class AssetBundle : Object { public AssetBundleRequest LoadAssetAsync<T>(string name) => null; }
+}
+
+public sealed class Shown : MonoBehaviour
+{
+#pragma warning disable 649
+PARTS
+}
+"""
 
 
 def section(title: str) -> str:
@@ -41,14 +77,36 @@ def test_members_are_public(content: Content, member: str) -> None:
     assert f"{COMPONENT}{member}" in content.declared["member"]
 
 
-@pytest.mark.parametrize("method", sorted(set(COMMAND.findall(GUIDE))))
+@pytest.mark.parametrize("method", sorted(set(COMMAND.findall(PAGES))))
 def test_methods_of_the_command_line_can_be_called_by_the_editor(content: Content, method: str) -> None:
     assert method in content.declared["command"]
 
 
-@pytest.mark.parametrize("text", sorted({*WORD.findall(GUIDE), *MARKER.findall(GUIDE)}))
+@pytest.mark.parametrize("text", sorted({*WORD.findall(PAGES), *MARKER.findall(PAGES)}))
 def test_arguments_log_lines_and_markers_exist(content: Content, text: str) -> None:
     assert content.says(text)
+
+
+def test_scripts_and_calls_compile(csharp: CSharp, tmp_path: Path) -> None:
+    """Those that the guide shows as they stand; its calls in a sentence with what they name as arguments."""
+    shown = [block for block in SCRIPT.findall(GUIDE) if "avatar." in block]
+    calls = sorted(set(CALLS.findall(GUIDE)))
+    assert (len(shown), len(calls)) == (2, 9)
+    component, loading = shown
+    given = "string name = null, avatarJoint = null, rigJoint = null; float weight = 0; byte[] bytes = null;"
+    given += "AvatarAsset asset = null;"
+    owner = {"Map": "rig.", "TakeRest": "rig.", "AddComponent": "gameObject."}
+    said = [f"{owner.get(re.split(r'[(<]', call)[0], '')}{call};" for call in calls]
+    parts = [
+        component,
+        f"private AssetBundle bundle; private IEnumerator Bring() {{ {loading} }}",
+        f"private void Calls(RetargetedRig rig) {{ {given} {' '.join(said)} }}",
+    ]
+    source = tmp_path / "Shown.cs"
+    source.write_text(FRAME.replace("PARTS", "\n".join(parts)))
+    compiler = Compiler(csharp, "quest", packages=True)
+    references = [compiler.built(name) for name in ("UnityEngine", "Mua.Avatar")]
+    csharp.build([source], library=True, references=references)
 
 
 def messages() -> list[str]:

@@ -127,4 +127,4 @@ def test_a_file_that_ends_early_where_no_length_was_told_is_a_sentence(
     page: Page, breaking: Breaking, content: bytes
 ) -> None:
     breaking.first.append(Answer(200, -1, content[:BREAK]))
-    load(page, breaking, until=f"{SENTENCE}.includes('outside the file')")
+    load(page, breaking, until=f"{SENTENCE}.includes('it is cut short')")

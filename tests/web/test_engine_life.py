@@ -53,10 +53,10 @@ def test_a_device_that_is_lost_again_at_once_is_given_up_in_a_sentence(opened: O
     [
         ('"none.muaavatar"', "none.muaavatar cannot be fetched: the server answers 404 Not Found."),
         ('"http://127.0.0.1:9/a.muaavatar"', "a.muaavatar cannot be fetched: the server is out of reach"),
-        ('"half.muaavatar"', "half.muaavatar: .*lie outside the file's"),
+        ('"half.muaavatar"', "half.muaavatar: the file has .* it is cut short or damaged; download or copy it again"),
         ('"damaged.muaavatar"', "damaged.muaavatar: crc32: .* the file is damaged"),
         ('new TextEncoder().encode("not an avatar").buffer', "this is not an avatar"),
-        ('new File(["no"], "b.muaavatar")', "b.muaavatar: the file has 2 bytes, too few for a .muaavatar"),
+        ('new File(["no"], "b.muaavatar")', "b.muaavatar: the file has 2 bytes and needs at least 8: it is cut short"),
     ],
     ids=["absent", "out of reach", "half", "damaged", "bytes", "file"],
 )
@@ -79,6 +79,64 @@ def test_what_is_disposed_of_holds_nothing_and_may_be_disposed_of_again(opened: 
 def test_a_picture_that_is_being_drawn_when_the_player_is_given_back_is_no_error(opened: Open) -> None:
     page = opened()
     assert page.evaluate("(() => { const drawn = player.draw(); player.dispose(); return drawn })()") is None
+
+
+CALLED = (
+    "(async () => {{ try {{ await ({}); return '' }} catch (error) {{ return error.name + ': ' + error.message }} }})()"
+)
+DISPOSED = "The player was disposed of; create another one."
+
+
+@pytest.mark.parametrize(
+    ("call", "said"),
+    [
+        ("player.load(null)", "Expected an address, a File or an ArrayBuffer to load, found null."),
+        ("player.load(new Uint8Array(9))", "Expected an address, a File or an ArrayBuffer to load, found Uint8Array."),
+        ("player.load('http://[')", '"http://[" is no address.'),
+        ("avatar.playClip(3)", "Expected an address, a File or an ArrayBuffer to load, found Number."),
+        ("avatar.retarget(null)", "retarget: expected names, parents, rotations and positions of joints."),
+        ("avatar.retarget({ names: [] })", "retarget: expected names, parents, rotations and positions of joints."),
+        ("avatar.setPose(3)", "setPose: expected rotations, translations or expressions, found 3."),
+        (
+            "avatar.setPose({ rotations: 3 })",
+            "setPose: rotations: expected numbers, of all joints or by name, found 3.",
+        ),
+        ("avatar.setExpressions(0.5)", "setExpressions: expected weights by name, found 0.5."),
+        ("(player.canvas.height = 0, player.screenshot())", "There is no picture of 0 x 0 pixels; give the canvas"),
+        ("(player.dispose(), player.load('a.muaavatar'))", DISPOSED),
+        ("(player.dispose(), player.screenshot())", DISPOSED),
+        ("(() => { const loaded = player.load('a.muaavatar'); player.dispose(); return loaded })()", DISPOSED),
+    ],
+)
+def test_a_wrong_call_is_a_sentence(opened: Open, small: Path, call: str, said: str) -> None:
+    page = opened(a=small.read_bytes())
+    assert load(page) == ""
+    assert page.evaluate(CALLED.format(call)).startswith(f"AvatarError: {said}")
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        "avatar.setPose({ rotations: null })",
+        "(player.canvas.width = 0, player.draw())",
+        "(player.time = NaN, player.time = -1, player.time = 1e300, player.draw())",
+        "(player.speed = NaN, player.level = 7, player.clip = 'nobody', player.draw())",
+        "(Object.assign(player.camera, { distance: 0 }), player.draw())",
+        "(avatar.remove(), avatar.setPose({}), avatar.setExpressions({ nobody: 1 }), player.draw())",
+        "(player.dispose(), player.draw(), player.start(), player.frameAll(), avatar.setPose({}), avatar.remove())",
+    ],
+)
+def test_what_shows_nothing_else_is_no_error_and_a_picture_comes_after(opened: Open, small: Path, call: str) -> None:
+    page = opened(a=small.read_bytes())
+    assert load(page) == ""
+    assert page.evaluate(CALLED.format(call)) == ""
+    assert page.evaluate("Number.isFinite(player.time)")
+    assert page.evaluate("faults") == []
+    if "dispose" not in call:
+        page.evaluate("(player.canvas.width = 64, player.canvas.height = 64, player.clip = 'wave', player.time = 0)")
+        page.evaluate("player.camera.distance = 3")
+        assert load(page) == ""
+        assert screenshot(page).std() > 0.01
 
 
 OTHER_SRC = "element.setAttribute('src', 'a.muaavatar?other')"

@@ -101,8 +101,9 @@ def test_malformed_files_get_the_same_sentence(tmp_path: Path, content: bytes) -
     assert [pair for pair in sentences if pair[0] != pair[1] and "one is negative" not in pair[0]] == []
 
 
-def test_truncated_files_are_refused_alike(tmp_path: Path, content: bytes) -> None:
-    path = tmp_path / "a.muaavatar"
+@pytest.mark.parametrize("storage", ["i8", "packed"])
+def test_truncated_files_are_refused_alike(tmp_path: Path, storage: Any) -> None:
+    path, content = tmp_path / "a.muaavatar", encode(with_surface(synthetic_avatar()), storage=storage)
     path.write_bytes(content)
     expected = [python_answer(content[:length]) for length in range(0, len(content), CUT)]
     assert node("truncated", path, CUT) == expected

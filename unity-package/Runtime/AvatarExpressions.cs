@@ -78,7 +78,7 @@ namespace Mua
             int at = asked.IndexOf(name);
             if (at < 0)
             {
-                if (names.Length == 0 || (Find(name) < 0 && ExpressionNames.Known(name) == null))
+                if (names.Length == 0 || name == null || (Find(name) < 0 && ExpressionNames.Known(name) == null))
                 {
                     return false;
                 }

@@ -35,7 +35,7 @@ namespace Mua
                 loader = open();
                 State = AvatarState.Loading;
             }
-            catch (InvalidOperationException error)
+            catch (Exception error) when (error is InvalidOperationException || error is ArgumentException) // the latter of paths
             {
                 Fail(error.Message);
             }

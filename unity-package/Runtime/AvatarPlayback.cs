@@ -56,11 +56,11 @@ namespace Mua
             }
         }
 
-        /// <summary>Seconds into the clip; 0 where there is none.</summary>
+        /// <summary>Seconds into the clip; 0 where there is none, and for what is no finite number.</summary>
         public double Seconds
         {
             get => seconds;
-            set => seconds = IsEmpty ? 0 : value;
+            set => seconds = IsEmpty || double.IsNaN(value) || double.IsInfinity(value) ? 0 : value;
         }
 
         /// <summary>Frame of the clip at the avatar's rate; setting it goes to the frame's beginning.</summary>

@@ -15,6 +15,7 @@ from mua.avatar.coarser import at_level, coarsest
 from mua.avatar.decode import PoseWindow, Splats, decode, decode_clip_frame
 from mua.avatar.model import Model
 from mua.errors import InputError
+from mua.limits import LARGEST_RATE, LEAST_RATE
 from mua.pose.clip import Clip
 from mua.pose.expression_names import set_weights
 from mua.pose.resample import frames_at
@@ -88,6 +89,8 @@ class Avatar(Model):
         A name of ARKit, VRM or Oculus' visemes that the avatar does not have moves the nearest that it has.
         Errors: InputError for a name that moves nothing, and for a weight that is no finite number.
         """
+        if not isinstance(named, Mapping):
+            raise InputError(f"expressions is {describe(named)}; expected weights by name, such as {{'jawOpen': 0.7}}")
         for name, weight in named.items():
             finite_array(weight, f"weight of expression {name!r}", ())
             if not (isinstance(name, str) and set_weights(self.expressions, {name: 1.0})):
@@ -136,6 +139,8 @@ class Avatar(Model):
             finite_array(clip.expressions, f"expressions {of}", (len(rotations), len(self.expressions)))
         if not len(clip):
             raise InputError(f"clip {clip.name!r} has no frames; expected at least one")
+        if not LEAST_RATE <= finite_array(clip.rate, f"rate {of}", ()) <= LARGEST_RATE:
+            raise InputError(f"rate {of} is {clip.rate}; expected {LEAST_RATE:g} to {LARGEST_RATE:g} frames per second")
         count = frames_at(clip, self.encoding.rate)
         if not 0 <= frame < count:
             raise InputError(f"frame is {frame}; clip {clip.name!r} has frames 0 to {count - 1}")

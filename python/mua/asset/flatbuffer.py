@@ -32,6 +32,7 @@ VERSION = (MAJOR, MINOR)
 CONTROL = re.compile(r"[\x00-\x1f\x7f-\x9f]")  # what a terminal would obey
 CONTROL_IN_NOTES = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f]")  # but tabs and line feeds
 DATA_ALIGN = 16  # bytes, of a tensor's data
+AGAIN = "download or copy it again"
 MAX_BYTES = 2**31 - 1  # FlatBuffers' offsets are 32 bits, and its builders stop at half of them
 
 
@@ -142,14 +143,19 @@ def parse(content: bytes) -> Tree:
     Errors: FormatError with code `truncated`, `identifier`, `version`, `offset`, `missing`, `enum` or `text`.
     """
     if len(content) < 8:
-        raise FormatError("truncated", "", f"the file has {len(content)} bytes, too few for a .muaavatar")
+        raise _cut(len(content), 8)
     if content[4:8] != IDENTIFIER:
-        raise FormatError("identifier", "", f"the file identifier is {content[4:8]!r}, expected {IDENTIFIER!r}")
+        raise FormatError("identifier", "", f"the file is no .muaavatar: bytes 4 to 7 are not {IDENTIFIER.decode()}")
     version = _Parser(content).scalar(ROOT, "version_major")
     if version != VERSION[0]:
         sentence = f"format version {version}, expected {VERSION[0]}: update mua where the file is newer"
         raise FormatError("version", "version_major", sentence)
     return _Parser(content).table(ROOT, 0, "")
+
+
+def _cut(size: int, needed: int) -> FormatError:
+    sentence = f"the file has {size} bytes and needs at least {needed}: it is cut short or damaged; {AGAIN}"
+    return FormatError("truncated", "", sentence)
 
 
 class _Parser:
@@ -161,6 +167,7 @@ class _Parser:
     def __init__(self, content: bytes) -> None:
         self.content = content
         self.left = len(content)  # bytes that no table or vector has claimed yet
+        self.stated = 0  # bytes that the file says it has; 0 where it does not
 
     def scalar(self, table: str, name: str) -> int:
         """One scalar of the root table, read before the rest is trusted."""
@@ -171,6 +178,8 @@ class _Parser:
     def table(self, table: str, at: int, path: str) -> Tree:
         """The table that the offset at byte `at` points to, as a dict."""
         positions = self._positions(table, self._follow(at, path), path)
+        if table == ROOT:
+            self.stated = self._last_word(positions.get("stages", 0))
         tree: Tree = {"_at": positions}
         for field in TABLES[table]:
             name = f"{path}.{field.name}".lstrip(".")
@@ -259,8 +268,16 @@ class _Parser:
         self._within(at, struct.calcsize(form), path)
         return int(struct.unpack_from(form, self.content, at)[0])
 
+    def _last_word(self, at: int) -> int:
+        """The last number of the vector that the offset at byte `at` points to; 0 where the file does not hold it."""
+        start = at + self._peek(at)
+        return self._peek(start + 4 * self._peek(start))
+
+    def _peek(self, at: int) -> int:
+        return int(struct.unpack_from("<I", self.content, at)[0]) if at + 4 <= len(self.content) else 0
+
     def _within(self, at: int, size: int, path: str) -> None:
-        if at < 0 or at + size > len(self.content):
-            raise FormatError(
-                "truncated", path, f"bytes {at} to {at + size} lie outside the file's {len(self.content)}"
-            )
+        if at < 0:
+            raise FormatError("truncated", path, "an offset leads before the first byte of the file")
+        if at + size > len(self.content):
+            raise _cut(len(self.content), max(at + size, self.stated))

@@ -7,7 +7,7 @@ import numpy as np
 from mua.arguments import PathLike, as_path
 from mua.arrays import Array
 from mua.asset.avatar import Avatar
-from mua.asset.flatbuffer import FormatError, Tree, parse, refuse
+from mua.asset.flatbuffer import AGAIN, FormatError, Tree, parse, refuse
 from mua.asset.magnitude import require_bounded
 from mua.asset.packing import unpack
 from mua.asset.read_model import read_branch, read_coarse, read_wavelet
@@ -67,7 +67,7 @@ def parse_checked(content: bytes) -> Tree:
     found = zlib.crc32(content[at + 4 :], zlib.crc32(bytes(4), zlib.crc32(content[:at])))
     if found != tree["crc32"]:
         raise FormatError(
-            "checksum", "crc32", f"{tree['crc32']:08x}, but the content gives {found:08x}: the file is damaged"
+            "checksum", "crc32", f"{tree['crc32']:08x}, but the content gives {found:08x}: the file is damaged; {AGAIN}"
         )
     _require_stages(tree, len(content))
     require_sizes(tree)

@@ -23,6 +23,8 @@ from mua.kernels.splat_sort import splat_sort
 WHITE = (1.0, 1.0, 1.0)
 SIZE = (640, 960)  # width and height in pixels: upright, as people stand
 LARGEST = 8192  # pixels along a side
+RIGID_BOUND = 1e-3  # by which a user's rotation may differ from one, computed in float32 and multiplied a few times
+LAST_ROW, PERSPECTIVE_ROW = (0, 0, 0, 1), (0, 0, -1, 0)  # of a view, and of a projection
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +52,8 @@ def render(
     `azimuth` the degrees by which it goes round to the avatar's left, 0 being the front of the bind pose, and
     `elevation` the degrees from which it looks down. `background` is a colour name or `#rrggbb`.
 
-    Errors: InputError for a size, an angle or an unknown colour, and where a camera comes with a size or an angle.
+    Errors: InputError for a size, an angle, an unknown colour or a camera without perspective, and where a camera comes
+    with a size or an angle.
 
     Example:
 
@@ -64,6 +67,8 @@ def render(
         raise InputError(f"camera is {describe(camera)}; expected a mua.Camera")
     elif (size, azimuth, elevation) != (SIZE, 0, 0):
         raise InputError("camera is given together with size, azimuth or elevation; expected camera alone")
+    else:
+        camera = _checked(camera)
     return Image.fromarray(to_bytes(render_over(splats, camera, background=parse_color(background))))
 
 
@@ -132,10 +137,28 @@ def to_bytes(image: Array) -> Array:
 
 def _orbit(splats: Splats, size: tuple[int, int], azimuth: float, elevation: float) -> Camera:
     """A camera that frames the splats, from angles in degrees."""
-    if not isinstance(size, Sequence) or len(size) != 2:
-        raise InputError(f"size is {describe(size)}; expected width and height in pixels")
-    width, height = (whole_number(side, "size") for side in size)
-    if not (0 < width <= LARGEST and 0 < height <= LARGEST):
-        raise InputError(f"size is {describe(size)}; expected sides of 1 to {LARGEST} pixels")
+    width, height = _pixels(size, "size")
     turn, tilt = (np.radians(finite_array(*angle, ())) for angle in ((azimuth, "azimuth"), (elevation, "elevation")))
     return orbit(frame_bounds(splats), screen=(width, height), azimuth=float(turn), elevation=float(tilt))
+
+
+def _checked(camera: Camera) -> Camera:
+    """A camera of a user, whose view is rigid and whose projection has a perspective."""
+    view = finite_array(camera.view, "view of the camera", (4, 4))
+    projection = finite_array(camera.projection, "projection of the camera", (4, 4))
+    if np.abs(view[:3, :3] @ view[:3, :3].T - np.eye(3)).max() > RIGID_BOUND or (view[3] != LAST_ROW).any():
+        raise InputError("view of the camera: expected a rotation and a translation, from the world to the eye")
+    if (projection[3] != PERSPECTIVE_ROW).any() or projection[2, 3] >= 0 or not projection[0, 0] * projection[1, 1]:
+        raise InputError(
+            "projection of the camera: expected a perspective of an eye that looks along -Z, its last row 0 0 -1 0"
+        )
+    return Camera(view, projection, _pixels(camera.screen, "screen of the camera"))
+
+
+def _pixels(size: tuple[int, int], name: str) -> tuple[int, int]:
+    if not isinstance(size, Sequence) or len(size) != 2:
+        raise InputError(f"{name} is {describe(size)}; expected width and height in pixels")
+    width, height = (whole_number(side, name) for side in size)
+    if not (0 < width <= LARGEST and 0 < height <= LARGEST):
+        raise InputError(f"{name} is {describe(size)}; expected sides of 1 to {LARGEST} pixels")
+    return width, height

@@ -36,6 +36,7 @@ def bake(
             "Rigged character: .fbx, .glb, .gltf, .vrm, .usd, .usda, .usdc, .usdz or .character; "
             "or the folder of a capture.",
             default="a built-in procedural character",
+            metavar="CHARACTER",
         ),
     ] = None,
     *,
@@ -122,7 +123,10 @@ def bake(
     height: Annotated[float | None, Option("Height to scale the character to, in metres.")] = None,
     facing: Annotated[
         Direction | None,
-        Option("Direction in which the character faces in its file, Y up: +x, -x, +z or -z.", default="as it shows"),
+        Option(
+            "Direction in which the character faces in its file, Y up: +x, -x, +z or -z.",
+            default="recognised from its body and motion",
+        ),
     ] = None,
     turn: Annotated[
         float, Option("Degrees by which to turn the character about its vertical axis, from +Z towards +X.")

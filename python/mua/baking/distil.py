@@ -37,7 +37,9 @@ if TYPE_CHECKING:  # torch takes seconds to load
 
 
 def train(
-    recording: Annotated["PathLike | Recording", Option("Directory of a recording, as a TeacherWriter writes it.")],
+    recording: Annotated[
+        "PathLike | Recording", Option("Directory of a recording, as a TeacherWriter writes it.", metavar="RECORDING")
+    ],
     *,
     output: OutputOption = "avatar.muaavatar",
     preset: PresetOption = "preview",

@@ -36,7 +36,7 @@ COLUMNS = ("kernel", "ms", "spread", "MB", "GB/s", "copy", "MFLOP", "GFLOP/s")
 
 def bench(
     context: typer.Context,
-    file: Annotated[Path | None, typer.Argument(help="Avatar file (.muaavatar).")] = None,
+    file: Annotated[Path | None, typer.Argument(metavar="FILE", help="Avatar file (.muaavatar).")] = None,
     preset_name: Annotated[
         str | None,
         choice(tuple(PRESETS), "--preset", help="Measure an avatar of random numbers with this preset's sizes."),

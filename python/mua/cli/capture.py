@@ -23,7 +23,7 @@ PICTURES = (".png", ".jpg", ".jpeg")
 
 
 def check(
-    folder: Annotated[Path, typer.Argument(help="Folder of the capture; it holds a capture.json.")],
+    folder: Annotated[Path, typer.Argument(metavar="CAPTURE", help="Folder of the capture; it holds a capture.json.")],
     output: Annotated[
         Path | None,
         typer.Option("--output", "-o", help="Image to write: the template's outline over some of the views."),
@@ -63,8 +63,9 @@ def describe(
     source: Annotated[
         Path,
         typer.Argument(
+            metavar="IMAGES",
             help="Folder with images: in the layout of AvatarReX, THuman4 or UMA, or with --calibration in images/ "
-            "or videos/ and masks/."
+            "or videos/ and masks/.",
         ),
     ],
     output: Annotated[Path, typer.Option("--output", "-o", help="Folder to write capture.json and the poses to.")],

@@ -23,8 +23,9 @@ def poses(
     keypoints: Annotated[
         Path,
         typer.Argument(
+            metavar="KEYPOINTS",
             help="3D keypoints: a .trc of Pose2Sim, OpenCap or OpenSim, a .csv or .npy of FreeMoCap, or a folder of "
-            "EasyMocap or OpenPose with a .json for each frame."
+            "EasyMocap or OpenPose with a .json for each frame.",
         ),
     ],
     template: Annotated[Path, typer.Option(help="The person as a rigged character.")],

@@ -16,7 +16,7 @@ AXES = ("y-up", "y-down")
 
 
 def export(
-    file: Annotated[Path, typer.Argument(help="Avatar file (.muaavatar).")],
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="Avatar file (.muaavatar).")],
     output: Annotated[
         Path | None,
         typer.Option(

@@ -17,7 +17,7 @@ from mua.files.inputs import require_file
 
 
 def inspect(
-    file: Annotated[Path, typer.Argument(help="Avatar file (.muaavatar).")],
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="Avatar file (.muaavatar).")],
     verify: Annotated[
         bool, typer.Option("--verify", help="Only check the file: exit status 0 if it is sound, else 1 and the reason.")
     ] = False,

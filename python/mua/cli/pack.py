@@ -19,7 +19,7 @@ LEAST, MOST = 1 / 16, 16.0  # rounding
 
 
 def pack(
-    file: Annotated[Path, typer.Argument(help="Avatar file (.muaavatar).")],
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="Avatar file (.muaavatar).")],
     output: Annotated[
         Path | None,
         typer.Option("--output", "-o", help="File to write.", show_default="FILE's name with the storage behind it"),

@@ -14,7 +14,9 @@ SUFFIX = ".html"
 
 
 def share(
-    files: Annotated[list[Path], typer.Argument(help="Avatar file (.muaavatar); several stand side by side.")],
+    files: Annotated[
+        list[Path], typer.Argument(metavar="FILES", help="Avatar file (.muaavatar); several stand side by side.")
+    ],
     output: Annotated[
         Path | None,
         typer.Option("--output", "-o", help="Folder to write; with --single-file an .html file.", show_default=False),
@@ -35,7 +37,7 @@ def share(
     for file in files:
         require_file(file)
     if output is None:
-        raise InputError("no -o is given; expected -o with a folder to write, or an .html file with --single-file")
+        raise InputError("-o is not given; expected a folder to write, or an .html file with --single-file")
     if single_file:
         if output.suffix.lower() != SUFFIX:
             raise InputError(f"-o is {output}; expected a name that ends in {SUFFIX} with --single-file")

@@ -33,7 +33,10 @@ def _list_devices(wanted: bool) -> None:
 @lent_by(Asked, command_options(Asked, PANELS))
 def view(
     files: Annotated[
-        list[Path], typer.Argument(help="Avatar file (.muaavatar); give several to switch between them in the window.")
+        list[Path],
+        typer.Argument(
+            metavar="FILES", help="Avatar file (.muaavatar); give several to switch between them in the window."
+        ),
     ],
     clip: Annotated[str | None, typer.Option(help="Clip to play.", show_default="the first one")] = None,
     frame: Annotated[
@@ -46,7 +49,7 @@ def view(
         typer.Option(
             metavar="PORT",
             help="Show poses and expressions that another program sends by the VMC protocol to this UDP port of this "
-            "machine, by custom 39539; ADDRESS:PORT for another address, 0.0.0.0 being all.",
+            "machine, usually 39539; ADDRESS:PORT for another address, 0.0.0.0 being all.",
         ),
     ] = None,
     motion: Annotated[Path | None, typer.Option(help="Motion file to play instead of the avatar's own clips.")] = None,

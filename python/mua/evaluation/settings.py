@@ -26,7 +26,7 @@ class EvaluationSettings:
     """What is compared with what, and how."""
 
     recording: Annotated[Path, Option("Directory of a recording or a capture.", metavar="RECORDING")]
-    avatars: Annotated[Sequence[Path], Option("Avatar files trained on it.")] = ()
+    avatars: Annotated[Sequence[Path], Option("Avatar files trained on it.", metavar="AVATARS")] = ()
     _: KW_ONLY
     teacher: Annotated[
         Path | None, Option("Folder that mua-teach wrote, where RECORDING is a capture.", default="none")

@@ -75,7 +75,9 @@ def require_kind(path: Path, expected: str, *, kinds: tuple[str, ...]) -> None:
 
 
 def refuse_foreign(path: Path) -> None:
-    """Raise an InputError that says how to convert a scene format that no reader here takes."""
+    """Raise an InputError for an avatar, or that says how to convert a scene format that no reader here takes."""
+    if path.suffix.lower() == ".muaavatar":
+        raise InputError(f"{path}: is an avatar already; mua-view shows it, mua-export writes its motion as .bvh")
     tool = FOREIGN_SUFFIXES.get(path.suffix.lower())
     if tool:
         raise InputError(

@@ -27,6 +27,7 @@ import { poseFrom, weighted } from "./pose.js";
  * @property {number} asked clips so far
  */
 
+const UNNAMED = "setExpressions: expected weights by name";
 const FACELESS = "setExpressions: the avatar has no expressions.";
 
 /** What a player does with its avatars before it draws them. */
@@ -67,6 +68,7 @@ export class Avatars {
   setExpressions(handle, given) {
     const entry = this.entryOf(handle);
     if (!entry) return;
+    if (given && typeof given !== "object") throw new AvatarError(`${UNNAMED}, found ${given}.`);
     if (!entry.face && Object.keys(given ?? {}).length) throw new AvatarError(FACELESS);
     const weights = entry.face?.set(given) ?? null;
     if (String(weights) === String(entry.weights)) return;

@@ -14,6 +14,25 @@ const MARKS = ["etag", "last-modified"]; // that another version of the file wou
 
 const megabytes = (/** @type {number} */ bytes) => (bytes / 1e6).toFixed(1);
 
+/**
+ * What a page asks to load: an address in full, a file or bytes.
+ * @template {string | ArrayBuffer | Blob} T @param {T} source @returns {T extends string ? string : T}
+ * @throws {AvatarError} for anything else
+ */
+export function sourceOf(source) {
+  const given = /** @type {any} */ (source);
+  if (given instanceof Blob || given instanceof ArrayBuffer) return /** @type {any} */ (given);
+  if (typeof given !== "string") {
+    const found = given?.constructor?.name ?? String(given);
+    throw new AvatarError(`Expected an address, a File or an ArrayBuffer to load, found ${found}.`);
+  }
+  try {
+    return /** @type {any} */ (new URL(given, document.baseURI).href);
+  } catch {
+    throw new AvatarError(`"${given}" is no address.`);
+  }
+}
+
 export class Download {
   constructor(/** @type {string} */ url) {
     this.url = url;

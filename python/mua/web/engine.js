@@ -17,6 +17,8 @@ import { offersVR } from "./webxr.js";
 /** @typedef {import("./format/read.js").Avatar} Avatar */
 
 const STUMBLE = 2000; // milliseconds; a device that is lost again so soon is given up
+const DISPOSED = "The player was disposed of; create another one.";
+const EMPTY = "There is no picture of 0 x 0 pixels; give the canvas a width and a height.";
 const TWICE = "The graphics device was lost twice at once; reload the page to try again.";
 
 /** Draws its avatars. */
@@ -120,6 +122,7 @@ export class Engine extends Avatars {
     /** @type {string | ArrayBuffer | File} */ source,
     /** @type {import("./player.js").LoadOptions} */ { onProgress = () => {}, onPart = () => {}, signal } = {},
   ) {
+    if (this.disposed) throw new AvatarError(DISPOSED);
     const progressive = new ProgressiveLoad(this, onPart);
     try {
       const avatar = await load(source, onProgress, (part) => progressive.show(part), signal);
@@ -133,12 +136,17 @@ export class Engine extends Avatars {
     }
   }
 
+  /** What draws its avatars. @throws {AvatarError} where there is nothing that does */
+  get drawing() {
+    if (!this.renderer) throw new AvatarError(this.disposed ? DISPOSED : AWAY);
+    return this.renderer;
+  }
+
   /** Show an avatar, in the place of a part of it where that is shown. @param {Avatar} avatar @param {Entry | null} part @param {boolean} whole @returns {Promise<Entry>} */
   async put(avatar, part, whole) {
-    const { renderer } = this;
-    if (!renderer) throw new AvatarError(AWAY);
+    const renderer = this.drawing;
     const { slot, face } = await this.prepared(avatar, renderer);
-    if (this.renderer !== renderer) throw new AvatarError(AWAY); // lost meanwhile
+    if (this.drawing !== renderer) throw new AvatarError(AWAY); // lost meanwhile
     const entry = part ?? this.entry(avatar, slot);
     if (!part) this.entries.push(entry);
     else if (this.entries.includes(part)) renderer.replace(part.slot, slot);
@@ -286,11 +294,11 @@ export class Engine extends Avatars {
   }
 
   async screenshot() {
+    if (!this.canvas.width || !this.canvas.height) throw new AvatarError(EMPTY);
     if (!isThereFor(this.show)) await this.fetchShown();
-    await this.renderer?.compile();
-    if (!this.renderer) throw new AvatarError(AWAY);
+    await this.drawing.compile();
     this.takePoses(performance.now(), true);
-    return this.renderer.picture(this.posed(), this.look);
+    return this.drawing.picture(this.posed(), this.look);
   }
 
   start() {

@@ -1,6 +1,6 @@
 // From a source to a checked avatar: fetched with progress and read in a worker, or here where there can be none.
 
-import { Download } from "./download.js";
+import { Download, sourceOf } from "./download.js";
 import { AvatarError } from "./error.js";
 import { read, readStage } from "./format/read.js";
 
@@ -21,7 +21,7 @@ export async function load(
   /** @type {AbortSignal | undefined} */ signal = undefined,
 ) {
   signal?.throwIfAborted();
-  const absolute = typeof source === "string" ? new URL(source, document.baseURI).href : source;
+  const absolute = sourceOf(source);
   const worker = startWorker();
   if (!worker) return loadHere(absolute, progress, preview);
   try {

@@ -30,7 +30,9 @@ export function inward(/** @type {ArrayLike<number>} */ theirs) {
 }
 
 /** The pose that a page gives. @param {Avatar} avatar @param {import("./player.js").PoseInput} given @returns {Pose} */
-export function poseFrom({ skeleton, expressions }, { rotations, translations, expressions: weights }) {
+export function poseFrom({ skeleton, expressions }, given) {
+  if (typeof given !== "object") throw fault(`expected rotations, translations or expressions, found ${given}`);
+  const { rotations, translations, expressions: weights } = given;
   const { names, bindRotations, bindTranslations } = skeleton;
   const turned = spread("rotations", rotations, names, outward(bindRotations));
   const moved = spread("translations", translations, names, Float64Array.from(bindTranslations));
@@ -59,8 +61,9 @@ export const listed = (/** @type {string[]} */ names) =>
 /** Numbers of all joints: as they are given, or by name over those of the bind pose. @param {string} field @param {JointNumbers | undefined} given @param {string[]} names @param {Float32Array | Float64Array} bind */
 function spread(field, given, names, bind) {
   const width = bind.length / names.length;
-  if (given === undefined) return bind;
-  if (typeof (/** @type {ArrayLike<number>} */ (given)?.length) === "number") {
+  if (given === undefined || given === null) return bind;
+  if (typeof given !== "object") throw fault(`${field}: expected numbers, of all joints or by name, found ${given}`);
+  if (typeof (/** @type {ArrayLike<number>} */ (given).length) === "number") {
     checkNumbers(
       field,
       /** @type {ArrayLike<number>} */ (given),

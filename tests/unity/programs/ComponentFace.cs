@@ -43,6 +43,7 @@ namespace Mua
                 Recorder.Keep(shown.Decoded.Mesh, "again " + frame);
             }
             Say("unknown", shown.SetExpression("nobody's", 1) + " " + shown.GetExpression("nobody's"));
+            Say("unknown", shown.SetExpression(null, 1) + " " + shown.GetExpression(null));
             foreach (float weight in new[] { float.NaN, float.NegativeInfinity })
             {
                 try

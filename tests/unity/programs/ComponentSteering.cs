@@ -23,6 +23,49 @@ namespace Mua
             Say("bounds", shown.Bounds.center.x + " " + shown.Bounds.center.y + " " + shown.Bounds.center.z + " " + shown.Bounds.size.magnitude);
         }
 
+        /// <summary>Numbers and names that mean nothing, what was destroyed, and a clip that plays on after each.</summary>
+        private static void IsMisused()
+        {
+            AvatarRenderer shown = Show(files[0]);
+            foreach (double moment in new[] { double.NaN, double.PositiveInfinity, -1e300, 1e300 })
+            {
+                shown.Seconds = moment;
+                Frames(2);
+                Say("moment", shown.Frame >= 0 && shown.Frame < shown.FrameCount);
+            }
+            foreach (int frame in new[] { -1, int.MaxValue, int.MinValue })
+            {
+                shown.Frame = frame;
+                Frames(2);
+                Say("moment", shown.Frame >= 0 && shown.Frame < shown.FrameCount);
+            }
+            shown.Speed = float.NaN;
+            Frames(2);
+            shown.Speed = 1;
+            Frames(36);
+            Say("plays", shown.Seconds);
+            foreach (AvatarLevel level in new[] { (AvatarLevel)(-7), (AvatarLevel)99 })
+            {
+                shown.Level = level;
+                Frames(2);
+                Say("splats", shown.SplatCount);
+            }
+            foreach (string path in new[] { null, "", "no\0path", "." })
+            {
+                shown.Load(path);
+                Until(shown);
+                Say("loaded", shown.State + " " + (shown.Message.Length > 0) + " " + shown.SetExpression("jawOpen", 1));
+            }
+            shown.Load((AvatarAsset)null);
+            Frames(1);
+            Say("loaded", shown.State + " " + (shown.Message.Length > 0) + " False");
+            Object.DestroyImmediate(shown);
+            Object.DestroyImmediate(shown);
+            shown.Seconds = 1;
+            shown.ResetExpressions();
+            Say("destroyed", shown.State + " " + shown.Seconds + " " + shown.SplatCount);
+        }
+
         private static void LeavesTraining()
         {
             AvatarRenderer shown = Begin(files[0]);

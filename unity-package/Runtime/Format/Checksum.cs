@@ -29,8 +29,8 @@ namespace Mua.Format
                 throw new AvatarFormatException(
                     "checksum", "crc32",
                     string.Format(
-                        CultureInfo.InvariantCulture, "{0:x8}, but the content gives {1:x8}: the file is damaged",
-                        stated, found));
+                        CultureInfo.InvariantCulture, "{0:x8}, but the content gives {1:x8}: the file is damaged; {2}",
+                        stated, found, Parser.Again));
             }
         }
 

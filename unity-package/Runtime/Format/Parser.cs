@@ -11,11 +11,15 @@ namespace Mua.Format
     /// </summary>
     internal sealed class Parser
     {
+        /// <summary>What to do with a file that is not what was written.</summary>
+        public const string Again = "download or copy it again";
+
         private const int OffsetWidth = 4;
         private static readonly UTF8Encoding Utf8 = new UTF8Encoding(false, true);
 
         private readonly byte[] content;
         private long left; // bytes that no table or vector has claimed yet
+        private long stated; // bytes that the file says it has; 0 where it does not
 
         private Parser(byte[] content)
         {
@@ -28,14 +32,14 @@ namespace Mua.Format
         {
             if (content.Length < 8)
             {
-                throw Fault("truncated", "", "the file has " + content.Length + " bytes, too few for a .muaavatar");
+                throw Cut(content.Length, 8);
             }
             string identifier = Layouts.Identifier;
             for (int i = 0; i < identifier.Length; i++)
             {
                 if (content[4 + i] != identifier[i])
                 {
-                    throw Fault("identifier", "", "the file has no identifier " + identifier + ": it is no .muaavatar");
+                    throw Fault("identifier", "", "the file is no .muaavatar: bytes 4 to 7 are not " + identifier);
                 }
             }
             new Parser(content).RequireVersion();
@@ -61,6 +65,10 @@ namespace Mua.Format
         private Table ReadTable(Layout layout, int at, string path)
         {
             int[] positions = FindFields(layout, Follow(at, path), path);
+            if (layout == Layouts.Root)
+            {
+                stated = LastWord(positions[layout.Slot("stages")]);
+            }
             var values = new object[layout.Fields.Length];
             for (int slot = 0; slot < values.Length; slot++)
             {
@@ -238,12 +246,33 @@ namespace Mua.Format
 
         private void RequireWithin(long at, long size, string path)
         {
-            if (at < 0 || at + size > content.Length)
+            if (at < 0)
             {
-                throw Fault(
-                    "truncated", path,
-                    "bytes " + at + " to " + (at + size) + " lie outside the file's " + content.Length);
+                throw Fault("truncated", path, "an offset leads before the first byte of the file");
             }
+            if (at + size > content.Length)
+            {
+                throw Cut(content.Length, Math.Max(at + size, stated));
+            }
+        }
+
+        /// <summary>The last number of the vector that the offset at byte `at` points to; 0 where the file does not hold it.</summary>
+        private uint LastWord(long at)
+        {
+            long start = at + Peek(at);
+            return Peek(start + 4L * Peek(start));
+        }
+
+        private uint Peek(long at)
+        {
+            return at + 4 <= content.Length ? MemoryMarshal.Read<uint>(new ReadOnlySpan<byte>(content, (int)at, 4)) : 0;
+        }
+
+        private static AvatarFormatException Cut(int size, long needed)
+        {
+            return Fault(
+                "truncated", "",
+                "the file has " + size + " bytes and needs at least " + needed + ": it is cut short or damaged; " + Again);
         }
 
         private static string Join(string path, string name)

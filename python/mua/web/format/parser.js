@@ -16,6 +16,8 @@ const TEXT = new TextDecoder("utf-8", { fatal: true, ignoreBOM: true });
 const CONTROL = /\p{Cc}/u; // what a terminal would obey
 const CONTROL_IN_NOTES = /(?![\t\n])\p{Cc}/u; // but tabs and line feeds
 
+export const AGAIN = "download or copy it again";
+
 /** An error of a file: what is wrong with which field, and its code. */
 export function fault(/** @type {string} */ code, /** @type {string} */ field, /** @type {string} */ sentence) {
   return new AvatarError(field ? `${field}: ${sentence}` : sentence, { code, field });
@@ -31,10 +33,9 @@ export const refuse = (/** @type {string} */ field, /** @type {string} */ senten
  */
 export function parse(content) {
   const bytes = new Uint8Array(content);
-  if (bytes.length < 8) throw fault("truncated", "", `the file has ${bytes.length} bytes, too few for a .muaavatar`);
-  const identifier = bytes.subarray(4, 8);
-  if (String.fromCharCode(...identifier) !== IDENTIFIER)
-    throw fault("identifier", "", `the file identifier is ${quoted(identifier)}, expected b'${IDENTIFIER}'`);
+  if (bytes.length < 8) throw cut(bytes.length, 8);
+  if (String.fromCharCode(...bytes.subarray(4, 8)) !== IDENTIFIER)
+    throw fault("identifier", "", `the file is no .muaavatar: bytes 4 to 7 are not ${IDENTIFIER}`);
   const version = new Parser(content).rootScalar("version_major");
   if (version !== MAJOR) {
     const sentence = `format version ${version}, expected ${MAJOR}: update mua where the file is newer`;
@@ -45,19 +46,9 @@ export function parse(content) {
   return { tree, crcAt: parser.crcAt };
 }
 
-/** Bytes as Python writes them. */
-function quoted(/** @type {Uint8Array} */ bytes) {
-  const named = new Map([
-    [9, "\\t"],
-    [10, "\\n"],
-    [13, "\\r"],
-    [92, "\\\\"],
-  ]);
-  const one = (/** @type {number} */ byte) =>
-    named.get(byte) ??
-    (byte < 32 || byte > 126 ? `\\x${byte.toString(16).padStart(2, "0")}` : String.fromCharCode(byte));
-  const text = Array.from(bytes, one).join("");
-  return text.includes("'") && !text.includes('"') ? `b"${text}"` : `b'${text.replaceAll("'", "\\'")}'`;
+function cut(/** @type {number} */ size, /** @type {number} */ needed) {
+  const sentence = `the file has ${size} bytes and needs at least ${needed}: it is cut short or damaged; ${AGAIN}`;
+  return fault("truncated", "", sentence);
 }
 
 const byOffset = (/** @type {Field} */ field) => Boolean(field.vector) || !(widthOf(field.kind) > 0);
@@ -73,6 +64,7 @@ class Parser {
     this.content = content;
     this.view = new DataView(content);
     this.left = content.byteLength; // bytes that no table or vector has claimed yet
+    this.stated = 0; // bytes that the file says it has; 0 where it does not
     /** @type {number | undefined} */
     this.crcAt = undefined;
   }
@@ -87,7 +79,10 @@ class Parser {
   /** The table that the offset at byte `at` points to. @returns {Tree} */
   table(/** @type {string} */ table, /** @type {number} */ at, /** @type {string} */ path) {
     const positions = this.positions(table, this.follow(at, path), path);
-    if (table === ROOT) this.crcAt = positions.crc32;
+    if (table === ROOT) {
+      this.crcAt = positions.crc32;
+      this.stated = this.lastWord(positions.stages ?? 0);
+    }
     /** @type {Tree} */
     const tree = {};
     for (const field of TABLES[table]) {
@@ -197,9 +192,17 @@ class Parser {
     return this.view[read](at, true);
   }
 
+  /** The last number of the vector that the offset at byte `at` points to; 0 where the file does not hold it. */
+  lastWord(/** @type {number} */ at) {
+    const peek = (/** @type {number} */ from) =>
+      from + 4 <= this.content.byteLength ? this.view.getUint32(from, true) : 0;
+    const start = at + peek(at);
+    return peek(start + 4 * peek(start));
+  }
+
   within(/** @type {number} */ at, /** @type {number} */ size, /** @type {string} */ path) {
     const length = this.content.byteLength;
-    if (at < 0 || at + size > length)
-      throw fault("truncated", path, `bytes ${at} to ${at + size} lie outside the file's ${length}`);
+    if (at < 0) throw fault("truncated", path, "an offset leads before the first byte of the file");
+    if (at + size > length) throw cut(length, Math.max(at + size, this.stated));
   }
 }

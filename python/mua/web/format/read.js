@@ -8,7 +8,7 @@ import { checkMagnitude } from "./magnitude.js";
 import { readBranch, readCoarse, readWavelet } from "./model.js";
 import { general, shortest } from "./numbers.js";
 import { unpack } from "./packing.js";
-import { fault, parse, refuse } from "./parser.js";
+import { AGAIN, fault, parse, refuse } from "./parser.js";
 import { besideRoot, readSkeleton, readSurface, readTemplate, readTexels, translated, unit } from "./rig.js";
 import { checkSizes } from "./sizes.js";
 import { leaveOut } from "./stages.js";
@@ -56,7 +56,7 @@ function checkSum(/** @type {ArrayBuffer} */ content, /** @type {Tree} */ tree, 
   const found = checksum(new Uint8Array(content), at);
   const hex = (/** @type {number} */ sum) => sum.toString(16).padStart(8, "0");
   if (found !== tree.crc32) {
-    const sentence = `${hex(tree.crc32)}, but the content gives ${hex(found)}: the file is damaged`;
+    const sentence = `${hex(tree.crc32)}, but the content gives ${hex(found)}: the file is damaged; ${AGAIN}`;
     throw fault("checksum", "crc32", sentence);
   }
 }

@@ -1,6 +1,6 @@
 // From a page's own motion file to a clip of an avatar, fetched and read when it is asked for.
 
-import { Download } from "../download.js";
+import { Download, sourceOf } from "../download.js";
 import { AvatarError, unfetched } from "../error.js";
 import { readBvh } from "./bvh.js";
 import { readGltf } from "./gltf.js";
@@ -36,15 +36,15 @@ export async function readClip(source, avatar, { name, mapping = {}, animation }
 
 /** @param {MotionSource} source @returns {Promise<{content: ArrayBuffer, title: string, beside: (uri: string) => Promise<ArrayBuffer>}>} */
 async function opened(source) {
-  if (typeof source !== "string") {
-    const content = source instanceof Blob ? await source.arrayBuffer() : source;
+  const found = sourceOf(source);
+  if (typeof found !== "string") {
+    const content = found instanceof Blob ? await found.arrayBuffer() : found;
     const beside = (/** @type {string} */ uri) =>
       Promise.reject(new AvatarError(`its ${uri} is another file; give its address, or a .glb.`));
-    return { content, title: source instanceof File ? source.name : "", beside };
+    return { content, title: found instanceof File ? found.name : "", beside };
   }
-  const address = new URL(source, document.baseURI).href;
-  const download = new Download(address);
-  const beside = (/** @type {string} */ uri) => new Download(new URL(uri, address).href).whole(() => {});
+  const download = new Download(found);
+  const beside = (/** @type {string} */ uri) => new Download(new URL(uri, found).href).whole(() => {});
   return { content: await download.whole(() => {}), title: download.name, beside };
 }
 

@@ -12,7 +12,8 @@ import { localOf } from "./source.js";
 /** What turns a rig's poses into an avatar's. @param {import("../format/read.js").Avatar | undefined} avatar @param {RigInfo} rig @param {{mapping?: Record<string, string>}} [options] @returns {Follow} */
 export function follow(avatar, rig, { mapping = {} } = {}) {
   if (!avatar) throw fault("the avatar was taken away");
-  const { names, parents } = rig;
+  const { names, parents } = rig ?? {};
+  if (!names || !parents) throw fault("expected names, parents, rotations and positions of joints");
   const late = parents.findIndex((parent, joint) => !(Number.isInteger(parent) && parent < joint));
   if (!names.length || parents.length !== names.length || late >= 0)
     throw fault(`parents: expected one of each of ${names.length} joints, before the joint itself; -1 for none`);
