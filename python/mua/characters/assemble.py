@@ -120,15 +120,7 @@ def assemble(
         source=Source(scene, rigged.nodes),
         corner_colors=None if (mesh.colors == 1).all() else mesh.colors,
         roles=roles_of(scene, rigged),
-        notes=(
-            *scene.notes,
-            *_rigid_parts(scene),
-            *size_notes,
-            *change.notes,
-            *mesh.notes,
-            *unseen,
-            *rigged.notes,
-        ),
+        notes=(*scene.notes, *_rigid_parts(scene), *size_notes, *change.notes, *mesh.notes, *unseen, *rigged.notes),
         unit=change.unit,
         size_notes=size_notes,
     )

@@ -7,14 +7,12 @@ LOST = (
     "Textures that are neither in the file nor beside it nor in its folder textures/, so that the parts they cover are "
     "drawn in one colour (put them beside the file): {}."
 )
-SHOWN = 8  # names that a sentence lists before it counts the rest
-
-
 PLAIN = (
     "The whole character is drawn in one colour: its surface has texture coordinates, but no material has a picture. "
     "Export it again with its textures, if it should have some. Materials: {}."
 )
 LOOKS_WRONG = (LOST, PLAIN)  # what anybody should look at before a bake
+SHOWN = 8  # names that a sentence lists before it counts the rest
 
 
 def is_about(note: str, sentence: str) -> bool:
