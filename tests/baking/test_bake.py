@@ -28,7 +28,7 @@ from mua.baking import pipeline
 from mua.baking.distillation import Baked
 from mua.baking.pipeline import bake, parts
 from mua.baking.plan import plan, split
-from mua.baking.recorded import recording_key
+from mua.baking.resumed_recording import recording_key
 from mua.baking.settings import BakeSettings
 from mua.baking.sources import load_character
 from mua.channels import ATTRIBUTES

@@ -6,7 +6,7 @@ from captures import MIDDLE, SIDE
 
 from mua.capture import Capture
 from mua.capture.camera import CaptureCamera
-from mua.capture.outline import overlap, pixels, rough_overlap, silhouette
+from mua.capture.silhouette import overlap, pixels, rough_overlap, silhouette
 
 
 def test_an_outline_covers_what_splats_do(small_capture: Capture) -> None:

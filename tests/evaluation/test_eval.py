@@ -303,7 +303,7 @@ class Weighed:
 def test_every_option_of_the_images_counts(
     recording: Recording, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("mua.cli.evaluation.Lpips", Weighed)
+    monkeypatch.setattr("mua.cli.recording_evaluation.Lpips", Weighed)
     monkeypatch.setitem(sys.modules, "mua_research", None)  # only systems need it
     (tmp_path / "weights").write_text("0.25")
     command.evaluate(

@@ -30,14 +30,14 @@ from mua.pose.components import INPUT_FLOOR, principal_components
 from mua.pose.encoding import Components
 from mua.rig.bones import figure_scale
 from mua.student import coarse, targets
-from mua.student import source as sources
+from mua.student import subband_source as sources
 from mua.student.bases import BestCoefficients
 from mua.student.conditioned import Conditioned, fold
 from mua.student.factorize import truncated_svd
 from mua.student.model import Branch, build_mlp
 from mua.student.regress import leading, whitening
 from mua.student.settings import Settings
-from mua.student.source import hold
+from mua.student.subband_source import hold
 from mua.student.targets import joint_targets
 from mua.training.optimise import Progress
 from mua.training.schedule import Schedule

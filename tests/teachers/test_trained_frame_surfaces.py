@@ -24,10 +24,10 @@ from mua.errors import InputError
 from mua.kernels.dq_skinning import blend_vertices
 from mua.rig.bones import PERSON
 from mua.rotation import dual_transform
-from mua.teachers.trained import measured, settings
+from mua.teachers.trained import frame_surfaces, settings
 from mua.teachers.trained.drivable_template import Undeformed
 from mua.teachers.trained.folder import load_teacher
-from mua.teachers.trained.measured import MeasuredSurfaces, measured_surfaces, read_surface, unit_of
+from mua.teachers.trained.frame_surfaces import MeasuredSurfaces, measured_surfaces, read_surface, unit_of
 from mua.teachers.trained.motion_deformation import MotionDeformation
 from mua.teachers.trained.teacher import TrainedTeacher
 from mua.teachers.trained.template_training import TemplateSettings
@@ -157,7 +157,7 @@ def test_a_surface_is_read_once_for_all_steps(tmp_path: Path) -> None:
 
 
 def test_no_more_surfaces_are_held_than_there_is_room_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(measured, "KEPT", 2)
+    monkeypatch.setattr(frame_surfaces, "KEPT", 2)
     surfaces, generator = surfaces_of(tmp_path, 3), torch.Generator()
     for frame in range(3):
         surfaces.observe(frame, generator)

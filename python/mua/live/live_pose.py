@@ -15,7 +15,7 @@ import numpy as np
 
 from mua import rotation
 from mua.arrays import Array
-from mua.live.posing import Posing
+from mua.live.retargeting import Posing
 from mua.live.vmc import GONE, Frame
 from mua.pose.encoding import PoseEncoding
 from mua.pose.expression_names import match_expressions

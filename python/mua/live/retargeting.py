@@ -20,7 +20,7 @@ from mua.live.vmc import Frame
 from mua.motion.contacts import standing
 from mua.motion.floor import foot_heights, hips_of, hips_path, led, leg_scale
 from mua.motion.match import match_joints, missing_limbs
-from mua.motion.rest import Rest, Y, rest_of
+from mua.motion.rest_alignment import Rest, Y, rest_of
 from mua.motion.retarget import calibrations_at_rest, local_rotations
 from mua.pose.descriptor import heading_of
 from mua.pose.skeleton import Pose, Skeleton

@@ -26,10 +26,10 @@ from mua.evaluation.metrics import LPIPS_UNIT
 from mua.pose.clip import Clip
 from mua.pose.skeleton import Skeleton
 from mua.pose.windows import window_of
-from mua.splatting.likeness import structural_similarity
 from mua.splatting.perceptual import Lpips
 from mua.splatting.projection import Eye, TorchSplats
 from mua.splatting.rasterise import rasterise
+from mua.splatting.ssim import structural_similarity
 from mua.teacher import TeacherFrame
 from mua.teachers.trained.teacher import TrainedTeacher
 

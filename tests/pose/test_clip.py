@@ -7,8 +7,7 @@ import pytest
 from people import chain, still
 
 from mua import rotation
-from mua.pose.clip import Clip, Stretches
-from mua.pose.moved import moved_by, show_one_pose
+from mua.pose.clip import Clip, Stretches, moved_by, show_one_pose
 
 
 def turned(degrees: float, *, frames: int = 1) -> Clip:

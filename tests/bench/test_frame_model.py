@@ -13,9 +13,9 @@ from mua.avatar.frame_budget import MILLISECONDS
 from mua.bench.counts import Counts, Drawn, LevelCounts, Part
 from mua.bench.crowd import DISPLAYED, crowd
 from mua.bench.devices import DEVICES, ModelDevice, Range, model_device
+from mua.bench.frame_model import BLOCK_CORNER, BLOCK_EDGE, FIXED, Modelled, model, shaded
 from mua.bench.instructions import count_instructions
 from mua.bench.measure import Measured, Timing
-from mua.bench.model import BLOCK_CORNER, BLOCK_EDGE, FIXED, Modelled, model, shaded
 from mua.bench.work import POSING, PROJECT_EYE, Work
 from mua.errors import InputError
 from mua.gpu import compile, sources

@@ -1,25 +1,10 @@
 """Animated scales and shears, which rigid joints do not carry: applied to the surface before joints move it."""
 
-from typing import Protocol
-
 import numpy as np
 
 from mua.arrays import Array
 from mua.pose.clip import Stretches
-from mua.pose.skeleton import Skeleton
-
-
-class Skinned(Protocol):
-    """A surface of V vertices on a skeleton."""
-
-    @property
-    def skeleton(self) -> Skeleton: ...
-
-    @property
-    def skin_indices(self) -> Array: ...  # [V, 8] int32
-
-    @property
-    def skin_weights(self) -> Array: ...  # [V, 8] float32
+from mua.rig.skinning import Skinned
 
 
 def stretched(

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mua.baking.evaluate import Errors, Picture, held_out_errors
+from mua.baking.student_errors import Errors, Picture, held_out_errors
 from mua.channels import ATTRIBUTES, SH_C0
 from mua.pose.clip import Clip
 from mua.recording import WholeFrame

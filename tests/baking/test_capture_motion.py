@@ -6,7 +6,7 @@ from captures import motions
 from synthetic_avatar import synthetic_avatar
 
 from mua import rotation
-from mua.baking.filmed_motion import HEADINGS, UP, filmed_settings, plan_headings, turned
+from mua.baking.capture_motion import HEADINGS, UP, filmed_settings, plan_headings, turned
 from mua.baking.plan import HeldOut
 from mua.pose.clip import Clip
 from mua.recording import PlannedClip

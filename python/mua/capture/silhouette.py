@@ -4,7 +4,7 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 from mua.arrays import Array
-from mua.atlas.surfaces import Surfaces
+from mua.atlas.character_surfaces import Surfaces
 from mua.avatar.camera import NEAR
 from mua.capture.camera import CaptureCamera
 from mua.pose.clip import Clip

@@ -9,7 +9,7 @@ import gen_spirv
 import pytest
 
 from mua.errors import InputError
-from mua.gpu import compile, compiled, glslang, sources
+from mua.gpu import compile, glslang, packaged_spirv, sources
 from mua.gpu.reflect import reflect
 
 ENTRIES = check_shaders.entry_points()
@@ -32,8 +32,8 @@ def copied(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """A copy of what comes compiled."""
-    return Path(shutil.copytree(compiled.FOLDER, tmp_path / "compiled"))
+    """A copy of what comes packaged_spirv."""
+    return Path(shutil.copytree(packaged_spirv.FOLDER, tmp_path / "compiled"))
 
 
 @pytest.mark.parametrize(("path", "entry", "stage"), ENTRIES, ids=[entry for _, entry, _ in ENTRIES])
@@ -49,7 +49,7 @@ def test_what_comes_compiled_is_up_to_date() -> None:
 def test_shaders_elsewhere_with_the_same_text_come_compiled_too(without_compiler: None, copied: Path) -> None:
     path = sources.find("mlp_matmul.compute")
     assert path.parent == copied
-    assert compile.spirv(path, "MlpMatmul") == (compiled.FOLDER / "mlp_matmul.MlpMatmul.comp.spv").read_bytes()
+    assert compile.spirv(path, "MlpMatmul") == (packaged_spirv.FOLDER / "mlp_matmul.MlpMatmul.comp.spv").read_bytes()
 
 
 @pytest.mark.parametrize("edited", ["mlp_matmul.compute", "common.hlsl"])
@@ -77,7 +77,7 @@ def _flip(folder: Path) -> None:
 
 
 def _of_another_text(folder: Path) -> None:
-    index = folder / compiled.INDEX
+    index = folder / packaged_spirv.INDEX
     name = "splat.SplatVert.vert.spv"
     made_from = replace(gen_spirv.SPIRV, path=folder).index()["made from"]
     index.write_text(index.read_text().replace(made_from[name], 64 * "0"))
@@ -104,4 +104,4 @@ def test_writing_mends_what_is_out_of_date(folder: Path) -> None:
     spirv = replace(gen_spirv.SPIRV, path=folder)
     spirv.write()
     assert spirv.faults() == []
-    assert (folder / compiled.INDEX).read_bytes() == (compiled.FOLDER / compiled.INDEX).read_bytes()
+    assert (folder / packaged_spirv.INDEX).read_bytes() == (packaged_spirv.FOLDER / packaged_spirv.INDEX).read_bytes()

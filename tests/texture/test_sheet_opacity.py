@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mua.texture.sharpness import SPREAD
-from mua.texture.sheet import surfel_opacities
+from mua.texture.sheet_opacity import surfel_opacities
 
 BY_PLACE = 0.01  # a mean over a thousand places
 

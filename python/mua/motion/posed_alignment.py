@@ -18,7 +18,7 @@ import numpy as np
 from mua import rotation
 from mua.arrays import Array
 from mua.motion.contacts import planted
-from mua.motion.rest import IDENTITY, Rest, Y, palm_alignment
+from mua.motion.rest_alignment import IDENTITY, Rest, Y, palm_alignment
 from mua.motion.trunk import AROUND, AT_EASE, Trunk, degrees, leaned, nearest_axis, trunk_of, unit
 from mua.pose.descriptor import heading_of
 from mua.pose.joint_names import FINGERS, ROLES

@@ -10,9 +10,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mua.avatar.decode import Splats, pose_splats
+from mua.evaluation.capture_scores import FilmedEntry, Show
 from mua.evaluation.cost import Cost, learnt_cost
 from mua.evaluation.entries import sentence
-from mua.evaluation.filmed import FilmedEntry, Show
 from mua.evaluation.settings import OURS
 from mua.pose.clip import Clip
 from mua.pose.windows import window_of

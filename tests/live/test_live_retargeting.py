@@ -15,10 +15,10 @@ from mua.characters.gltf.vrm import ROLES
 from mua.characters.read import read_surfaces
 from mua.errors import InputError
 from mua.live.bones import AT_REST, BONES, sender_skeleton
-from mua.live.posing import CONFIRMED, Posing
+from mua.live.retargeting import CONFIRMED, Posing
 from mua.live.vmc import Frame
 from mua.motion.bvh import read_bvh
-from mua.motion.source import SourceMotion
+from mua.motion.source_motion import SourceMotion
 from mua.pose.clip import Clip
 from mua.pose.joint_names import roles
 from mua.pose.skeleton import Skeleton

@@ -14,7 +14,7 @@ from rich.table import Table
 
 from mua.arrays import Array
 from mua.avatar.rendering import to_bytes
-from mua.evaluation.filmed import IMAGE, SPLITS, FilmedEntry, Judged, Likeness, Shot, Standing, mean
+from mua.evaluation.capture_scores import IMAGE, SPLITS, FilmedEntry, Judged, Likeness, Shot, Standing, mean
 from mua.evaluation.settings import OURS
 from mua.fidelity.strips import GAIN, caption, difference
 from mua.files.write import replacing

@@ -4,7 +4,7 @@ import pytest
 import torch
 from torchmetrics.functional.image import structural_similarity_index_measure
 
-from mua.splatting.likeness import structural_similarity
+from mua.splatting.ssim import structural_similarity
 
 BOUND = 1e-4  # rounding of float32; SSIM divides variances as small as 1e-4, which are differences of squares
 

@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 from synthetic_avatar import synthetic_avatar
 
-from mua.baking import recorded as recordings
-from mua.baking.recorded import recorded, recording_key
+from mua.baking import resumed_recording as recordings
+from mua.baking.resumed_recording import recorded, recording_key
 from mua.baking.settings import BakeSettings
 from mua.pose.clip import Stretches
 from mua.recording import PlannedClip
 from mua.student.settings import preset
-from mua_research import filmed_training
+from mua_research import capture_training
 
 CLIP = synthetic_avatar().clips[0]
 PLANNED = PlannedClip(CLIP, held_out=False, wanted=frozenset({0, 2, 3}), whole=None)
@@ -94,11 +94,11 @@ def test_poses_of_a_capture_are_recorded_at_one_rate_however_often_it_was_filmed
 ) -> None:
     """Poses at the rate of the file say all; the images' rate is no part of what is recorded."""
     rates: list[float] = []
-    monkeypatch.setattr(filmed_training, "record_by_workers", lambda *_, rate, **__: rates.append(rate))
-    monkeypatch.setattr(filmed_training, "Recording", lambda directory: directory)
-    monkeypatch.setattr(filmed_training, "teacher_bytes", lambda _: [b"teacher"])
-    monkeypatch.setattr(filmed_training, "plan_headings", lambda *_, **__: [PLANNED])
+    monkeypatch.setattr(capture_training, "record_by_workers", lambda *_, rate, **__: rates.append(rate))
+    monkeypatch.setattr(capture_training, "Recording", lambda directory: directory)
+    monkeypatch.setattr(capture_training, "teacher_bytes", lambda _: [b"teacher"])
+    monkeypatch.setattr(capture_training, "plan_headings", lambda *_, **__: [PLANNED])
     surfaces = SimpleNamespace(skeleton=None)
     captures = [SimpleNamespace(clips=(), rate=rate, surfaces=surfaces) for rate in (25.0, 30.0, 25.0)]
-    made = {filmed_training._record(tmp_path, one, 9, tmp_path, Heard()) for one in captures}  # type: ignore[arg-type]
+    made = {capture_training._record(tmp_path, one, 9, tmp_path, Heard()) for one in captures}  # type: ignore[arg-type]
     assert (len(made), rates) == (1, [30.0, 30.0, 30.0])

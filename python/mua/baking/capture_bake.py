@@ -6,13 +6,13 @@ from functools import partial
 import torch
 
 from mua.asset.storable import require_names
+from mua.baking.capture_motion import filmed_clips, filmed_settings, plan_headings, put_on
 from mua.baking.distillation import Baked, Distillation, distil_student, finish
-from mua.baking.filmed_motion import filmed_clips, filmed_settings, plan_headings, put_on
 from mua.baking.listener import Listener
 from mua.baking.plan import split
 from mua.baking.playback import choose
-from mua.baking.recorded import recorded, recording_key
 from mua.baking.report import FILMED
+from mua.baking.resumed_recording import recorded, recording_key
 from mua.baking.settings import BakeSettings
 from mua.baking.teacher_stages import carry_out
 from mua.capture import open_capture

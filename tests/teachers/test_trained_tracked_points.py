@@ -17,11 +17,11 @@ from mua.errors import InputError
 from mua.pose.clip import Clip
 from mua.rig.bones import figure_scale
 from mua.rig.surface_points import face_normals, interpolate, spread_points
-from mua.teachers.trained import tracked
+from mua.teachers.trained import tracked_points
 from mua.teachers.trained.anchors import Anchors, anchors_of, first_hits, places
 from mua.teachers.trained.image_losses import ImageLoss
 from mua.teachers.trained.track_losses import TexelTracks, Tracks
-from mua.teachers.trained.tracked import _nearest_texels
+from mua.teachers.trained.tracked_points import _nearest_texels
 
 POINTS = 40
 
@@ -120,9 +120,9 @@ def large_figure(points: Array, monkeypatch: pytest.MonkeyPatch) -> list[TexelTr
     bind = rig.skeleton.bind_pose
     clip = Clip("stands", 30.0, bind.rotations[None], bind.translations[None])
     seen = PointTracks(Path("tracks.npz"), points[None], np.ones((1, len(points))))
-    monkeypatch.setattr(tracked, "read_tracks", lambda *_: [seen])
+    monkeypatch.setattr(tracked_points, "read_tracks", lambda *_: [seen])
     filmed = SimpleNamespace(subject=SimpleNamespace(rig=rig), capture=None, device=torch.device("cpu"))
-    return tracked.tracks_of_clip(filmed, clip)  # type: ignore[arg-type]
+    return tracked_points.tracks_of_clip(filmed, clip)  # type: ignore[arg-type]
 
 
 def test_tracks_of_a_clip_are_those_of_its_points_that_lie_on_the_figure(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -8,10 +8,10 @@ from people import person, retarget, walk
 from vmc_senders import Sender, frames_of, humanoid, performing
 
 from mua.arrays import Array
-from mua.live.live import EASING, Live
-from mua.live.posing import Posing
+from mua.live.live_pose import EASING, Live
+from mua.live.retargeting import Posing
 from mua.live.vmc import GONE, Frame
-from mua.motion.source import SourceMotion
+from mua.motion.source_motion import SourceMotion
 from mua.pose.clip import Clip
 from mua.pose.encoding import PoseEncoding
 from mua.pose.skeleton import Pose

@@ -7,19 +7,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 import torch
-from compared import few
+from compared_systems import few
 from empty_entries import nothing
 from PIL import Image
 
 from mua.avatar.decode import pose_splats
+from mua.evaluation.capture_report import sheet_names, student_of
+from mua.evaluation.capture_scores import TRAINED, UNSEEN, FilmedEntry, Judged, Likeness, Shot
 from mua.evaluation.cost import Cost, learnt_cost
-from mua.evaluation.filmed import TRAINED, UNSEEN, FilmedEntry, Judged, Likeness, Shot
-from mua.evaluation.filmed_report import sheet_names, student_of
 from mua.recording import Recording
 from mua.training.checkpoint import Checkpoints
-from mua_research import filmed_systems
+from mua_research import capture_systems
+from mua_research.capture_systems import STEPS_OF_TWO, Sized, cost_of, largest_within, sized, trained_entries
 from mua_research.curve import COSTS, curve, points
-from mua_research.filmed_systems import STEPS_OF_TWO, Sized, cost_of, largest_within, sized, trained_entries
 from mua_research.network import Forgetful
 from mua_research.standing import best, sentences, standings
 from mua_research.system import Budget, Sizes, Training, TrainingFrames
@@ -92,7 +92,7 @@ def test_a_system_is_shown_as_it_learnt_and_one_that_fails_is_told(
         monkeypatch.setattr(system, "fit", lambda *_: 1 / 0)
         return system
 
-    monkeypatch.setattr(filmed_systems, "SYSTEMS", {**SYSTEMS, "single-level": broken})
+    monkeypatch.setattr(capture_systems, "SYSTEMS", {**SYSTEMS, "single-level": broken})
     frames, begun, failed = few(smooth_frames), list[str](), list[str]()
     entries = trained_entries(
         [Sized("single-level", 1.0), Sized("linear", 2.0)],

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mua.asset.tensors import pack
-from mua.gpu.stored import upload_words
+from mua.gpu.tensor_words import upload_words
 
 
 def test_f32_is_its_bits() -> None:

@@ -7,8 +7,8 @@ import pytest
 import torch
 from scipy.spatial.distance import cdist
 
-from mua.training import smoother
-from mua.training.smoother import LEAST, RIDGE, WIDTH, Through, fit_beyond, fit_smoother
+from mua.training import kernel_regression
+from mua.training.kernel_regression import LEAST, RIDGE, WIDTH, Through, fit_beyond, fit_smoother
 
 
 def frames(count: int, dimensions: int = 4) -> tuple[torch.Tensor, torch.Tensor]:
@@ -16,7 +16,7 @@ def frames(count: int, dimensions: int = 4) -> tuple[torch.Tensor, torch.Tensor]
     return x, torch.stack([torch.tanh(x[:, 0]), x[:, 1] * x[:, 2]], dim=1)
 
 
-def fitted(x: torch.Tensor, targets: torch.Tensor) -> smoother.Smoother:
+def fitted(x: torch.Tensor, targets: torch.Tensor) -> kernel_regression.Smoother:
     return fit_smoother(x, targets, generator=torch.Generator().manual_seed(1))
 
 
@@ -34,7 +34,7 @@ def test_is_kernel_ridge_regression_where_every_frame_is_a_centre() -> None:
 def test_some_of_the_frames_span_nearly_the_same_function(monkeypatch: pytest.MonkeyPatch) -> None:
     x, targets = frames(300)
     every = fitted(x, targets)(x)
-    monkeypatch.setattr(smoother, "CENTRES", 100)
+    monkeypatch.setattr(kernel_regression, "CENTRES", 100)
     some = fitted(x, targets)
     assert len(some.centres) == 100
     assert (some(x) - every).square().sum() < 0.05 * every.square().sum()
@@ -58,7 +58,7 @@ def test_noise_counts_frame_by_frame_also_where_only_some_span_the_function(monk
     every, some = (
         fit_smoother(x, targets, generator=torch.Generator().manual_seed(1), noise=noise)(x)
         for centres in (300, 200)
-        if monkeypatch.setattr(smoother, "CENTRES", centres) is None
+        if monkeypatch.setattr(kernel_regression, "CENTRES", centres) is None
     )
     errors = (every - targets).square().sum(1)
     assert errors[:150].mean() < 0.5 * errors[150:].mean()
@@ -112,7 +112,7 @@ def test_centres_that_both_widths_share_are_in_memory_once() -> None:
     x, targets, own = users_and_range()
     function = fit_beyond(x, targets, own, beyond=10.0, generator=torch.Generator().manual_seed(1))
     nested = function.terms[1]
-    assert isinstance(nested, smoother.Nested)
+    assert isinstance(nested, kernel_regression.Nested)
     assert torch.equal(nested.narrow.centres, x[own])
     assert nested.narrow.centres.data_ptr() == nested.wide.centres.data_ptr()
 

@@ -7,7 +7,7 @@ from time import monotonic
 
 import numpy as np
 
-from mua.live.live import Live
+from mua.live.live_pose import Live
 from mua.live.receiver import Latency
 from mua.pose.skeleton import Pose
 from mua.share.site import BRIDGE, PAGE, PLAYER, SCRIPT, Content, Site

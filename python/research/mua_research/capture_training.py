@@ -4,11 +4,11 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from mua.baking.filmed_motion import filmed_clips, filmed_settings, plan_headings
-from mua.baking.recorded import recording_key
+from mua.baking.capture_motion import filmed_clips, filmed_settings, plan_headings
+from mua.baking.resumed_recording import recording_key
 from mua.capture import Capture
 from mua.cli.display import Display
-from mua.evaluation.filmed import FilmedEntry, require_skeleton
+from mua.evaluation.capture_scores import FilmedEntry, require_skeleton
 from mua.evaluation.settings import ALL, SYSTEM_NAMES, EvaluationSettings
 from mua.pose.encoding import RATE
 from mua.recording import Recording
@@ -16,7 +16,7 @@ from mua.recording.workers import record_by_workers
 from mua.student.settings import preset
 from mua.teachers.trained.folder import teacher_bytes
 from mua.teachers.trained.teacher import TrainedTeacher
-from mua_research.filmed_systems import sized, trained_entries
+from mua_research.capture_systems import sized, trained_entries
 from mua_research.training import prepare
 
 
