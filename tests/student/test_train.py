@@ -34,9 +34,9 @@ from mua.student import subband_source as sources
 from mua.student.bases import BestCoefficients
 from mua.student.conditioned import Conditioned, fold
 from mua.student.factorize import truncated_svd
-from mua.student.model import Branch, build_mlp
+from mua.student.model import Branch, build_mlp, linear_layers
 from mua.student.regress import leading, whitening
-from mua.student.settings import Settings
+from mua.student.settings import Generalisation, Settings
 from mua.student.subband_source import hold
 from mua.student.targets import joint_targets
 from mua.training.optimise import Progress
@@ -307,3 +307,19 @@ def test_fewer_frames_than_blendshapes_train(tmp_path: Path) -> None:
     student = train_in(tmp_path, quick(), data=samples(2))
     assert all(torch.isfinite(tensor).all() for tensor in student.state_dict().values())
     assert isinstance(student.geometry, Branch)
+
+
+def test_fine_tuning_lets_weights_decay_and_bases_not(tmp_path: Path) -> None:
+    """One step whose rate is all but nothing, so that the decay alone changes a student."""
+    lr, shrink = 1e-7, 0.25
+    step = Schedule(steps=1, batch=1, lr=lr, cosine=False)
+    settings = replace(SETTINGS, regression=replace(step, lr=1e-12), finetune=step)
+    kept, decayed = (
+        train_in(tmp_path / str(decay), replace(settings, generalisation=Generalisation(weight_decay=decay)))
+        for decay in (0.0, shrink / lr)
+    )
+    for before, after in ((kept.geometry, decayed.geometry), (kept.appearance, decayed.appearance)):
+        hidden = [linear_layers(branch.mlp)[1].weight for branch in (before, after)]
+        assert torch.allclose(hidden[1], (1 - shrink) * hidden[0], atol=1e-4)
+        assert torch.allclose(after.ll_basis, before.ll_basis, atol=1e-4)
+        assert torch.allclose(after.d2.h, before.d2.h, atol=1e-4)
