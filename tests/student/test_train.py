@@ -25,7 +25,7 @@ from synthetic_student import (
 )
 from trainings import one_by_one
 
-from mua.channels import APPEARANCE, GEOMETRY
+from mua.channels import APPEARANCE, COARSE_TEXELS, GEOMETRY
 from mua.pose.components import INPUT_FLOOR, principal_components
 from mua.pose.encoding import Components
 from mua.rig.bones import figure_scale
@@ -38,7 +38,7 @@ from mua.student.model import Branch, build_mlp, linear_layers
 from mua.student.regress import leading, whitening
 from mua.student.settings import Generalisation, Settings
 from mua.student.subband_source import hold
-from mua.student.targets import joint_targets
+from mua.student.targets import joint_targets, least_spread
 from mua.training.optimise import Progress
 from mua.training.schedule import Schedule
 from mua.wavelets import Bands
@@ -229,6 +229,24 @@ def test_what_is_seen_of_an_offset_depends_on_the_size_of_the_figure(tmp_path: P
     )
     student = train_in(tmp_path, quick(), data=data)
     assert student.geometry.d2.h[:, 0].any() != still
+
+
+@pytest.mark.parametrize(("channel", "size"), [(10, 1.0), (0, 100.0)])  # an opacity, an offset of a large figure
+def test_a_channel_that_hardly_varies_stays_at_its_mean(tmp_path: Path, channel: int, size: float) -> None:
+    """One sample of its LL changes visibly; over all texels and frames that is next to nothing."""
+    _, bands = bands_of_frames()
+    for band in (bands.ll[:, channel], bands.d3[:, :, channel], bands.d2[:, :, channel]):
+        band.zero_()
+    least = least_spread(GEOMETRY, size=size)[channel]
+    bands.ll[:, channel, 1, 1] = 2 * COARSE_TEXELS * least * torch.linspace(-1, 1, FRAMES)
+    given = samples()
+    scale = size / figure_scale(given.meshes(torch.arange(1))[0].numpy())
+    data = replace(
+        given,
+        subbands=lambda part, rows: Bands(*(b[rows] for b in bands.of(part))),
+        meshes=lambda rows: scale * given.meshes(rows),
+    )
+    assert train_in(tmp_path, quick(), data=data).geometry.ll_basis[channel].abs().max() < 0.1 * least
 
 
 def test_whitened_directions_vary_alike_down_to_the_floor() -> None:
