@@ -1,4 +1,4 @@
-"""The comparison that mua-eval makes, once its options are known to be good."""
+"""The comparison that mua-eval makes with a teacher's recording, once its options are known to be good."""
 
 from collections.abc import Sequence
 from contextlib import closing

@@ -1,4 +1,4 @@
-"""Similarity of two images, with gradients, as a training loss."""
+"""Structural similarity (SSIM) of two images, with gradients, as a training loss."""
 
 import torch
 from torch import Tensor

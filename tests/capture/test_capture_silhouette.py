@@ -1,4 +1,4 @@
-"""Outlines of a posed template in a camera: what they cover, and how far they overlap masks."""
+"""Silhouettes of a posed template in a camera: what they cover, and how far they overlap masks."""
 
 import numpy as np
 import pytest
