@@ -32,7 +32,7 @@ def copied(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """A copy of what comes packaged_spirv."""
+    """A copy of what comes compiled."""
     return Path(shutil.copytree(packaged_spirv.FOLDER, tmp_path / "compiled"))
 
 

@@ -10,8 +10,8 @@ from surfel_coverage import coverage
 
 from mua.rig.character import Mesh
 from mua.rig.texel_map import build_texel_map
-from mua.texture.footprints import TexelPoints
-from mua.texture.rims import FARTHEST, WIDEST
+from mua.texture.footprints import Samples, TexelPoints
+from mua.texture.rims import FARTHEST, NARROWEST, WIDEST, fit_rims
 from mua.texture.sharpness import SPREAD
 from mua.texture.surfels import rest_surfels
 
@@ -66,3 +66,19 @@ def test_surfels_inside_stay_where_their_texels_are() -> None:
     moved = np.linalg.norm(found.aside[~inside], axis=1)
     assert 0 < moved.max() <= FARTHEST * SIDE
     assert np.exp(found.log_scales[:, :2]).max() <= WIDEST * SPREAD * SIDE * (1 + 1e-6)
+
+
+@pytest.mark.parametrize(("spread", "width"), [(3.0, WIDEST), (0.0, NARROWEST)])
+def test_surface_far_from_a_texel_does_not_pull_its_surfel_out_of_its_place(spread: float, width: float) -> None:
+    """A strip between texels, say, that is long or has no width."""
+    mesh = square(3)
+    texels = build_texel_map(mesh, SIZE)
+    points = TexelPoints(mesh, SIZE, texels.texels, texels.triangles, texels.barycentrics)
+    strip = points.places[:1] + SIDE * np.array([[2, 2, 0]]) + SIDE * spread * np.linspace(-1, 1, 9)[:, None]
+    own = np.zeros(len(strip), int)
+    samples = Samples(places=strip, triangles=own, texels=own, bare=own > 0)
+    count = len(texels.texels)
+    found = fit_rims(points, samples, np.tile(np.eye(3), (count, 1, 1)), steps=np.full((count, 2), SIDE))
+    assert found.texels.tolist() == [0]
+    np.testing.assert_allclose(found.aside, [FARTHEST * SIDE * np.array([0.5**0.5, 0.5**0.5, 0])])
+    np.testing.assert_allclose(found.steps, width * SIDE)
