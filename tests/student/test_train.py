@@ -37,6 +37,7 @@ from mua.student.factorize import truncated_svd
 from mua.student.model import Branch, build_mlp, linear_layers
 from mua.student.regress import leading, whitening
 from mua.student.settings import Generalisation, Settings
+from mua.student.stages import Samples
 from mua.student.subband_source import hold
 from mua.student.targets import joint_targets, least_spread
 from mua.training.optimise import Progress
@@ -214,20 +215,24 @@ def test_a_channel_that_only_rounds_stays_at_its_mean(tmp_path: Path) -> None:
     assert not student.geometry.d2.h[:, opacity].any()
 
 
+def figure_of(size: float, bands: Bands) -> Samples:
+    """Samples of a figure that is so many times as large as a person."""
+    given = samples()
+    scale = size / figure_scale(given.meshes(torch.arange(1))[0].numpy())
+    return replace(
+        given,
+        subbands=lambda part, rows: Bands(*(b[rows] for b in bands.of(part))),
+        meshes=lambda rows: scale * given.meshes(rows),
+    )
+
+
 @pytest.mark.parametrize(("size", "still"), [(1.0, False), (100.0, True)])
 def test_what_is_seen_of_an_offset_depends_on_the_size_of_the_figure(tmp_path: Path, size: float, still: bool) -> None:
     """Hundredths of a millimetre on a person, and on a figure that is a hundred times as large."""
     _, bands = bands_of_frames()
     for band in (bands.ll[:, 0], bands.d3[:, :, 0], bands.d2[:, :, 0]):
         band.mul_(1e-2)
-    given = samples()
-    scale = size / figure_scale(given.meshes(torch.arange(1))[0].numpy())
-    data = replace(
-        given,
-        subbands=lambda part, rows: Bands(*(b[rows] for b in bands.of(part))),
-        meshes=lambda rows: scale * given.meshes(rows),
-    )
-    student = train_in(tmp_path, quick(), data=data)
+    student = train_in(tmp_path, quick(), data=figure_of(size, bands))
     assert student.geometry.d2.h[:, 0].any() != still
 
 
@@ -239,14 +244,7 @@ def test_a_channel_that_hardly_varies_stays_at_its_mean(tmp_path: Path, channel:
         band.zero_()
     least = least_spread(GEOMETRY, size=size)[channel]
     bands.ll[:, channel, 1, 1] = 2 * COARSE_TEXELS * least * torch.linspace(-1, 1, FRAMES)
-    given = samples()
-    scale = size / figure_scale(given.meshes(torch.arange(1))[0].numpy())
-    data = replace(
-        given,
-        subbands=lambda part, rows: Bands(*(b[rows] for b in bands.of(part))),
-        meshes=lambda rows: scale * given.meshes(rows),
-    )
-    assert train_in(tmp_path, quick(), data=data).geometry.ll_basis[channel].abs().max() < 0.1 * least
+    assert train_in(tmp_path, quick(), data=figure_of(size, bands)).geometry.ll_basis[channel].abs().max() < 0.1 * least
 
 
 def test_whitened_directions_vary_alike_down_to_the_floor() -> None:
