@@ -146,11 +146,11 @@ def forked(monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest) -> N
 @pytest.fixture
 def first_try(monkeypatch: pytest.MonkeyPatch) -> None:
     """Charts may lie anywhere: the first layout is taken, on a grid of half as many cells a side."""
-    from mua.atlas import packing, packing_grid  # here, because few tests need it
+    from mua.atlas import chart_packing, packing_grid  # here, because few tests need it
 
-    monkeypatch.setattr(packing, "TRIES", packing.TRIES[:1])
+    monkeypatch.setattr(chart_packing, "TRIES", chart_packing.TRIES[:1])
     half = packing_grid.GRID // 2
-    for module in (packing, packing_grid):
+    for module in (chart_packing, packing_grid):
         monkeypatch.setattr(module, "GRID", half)
 
 
@@ -190,17 +190,17 @@ def trained(written: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="session")
 def smooth_recording(tmp_path_factory: pytest.TempPathFactory) -> "Recording":
     """A smooth teacher's frames, which every compared system can fit."""
-    import compared  # here, because few tests need torch
+    import compared_systems  # here, because few tests need torch
 
-    return compared.smooth_recording(tmp_path_factory.mktemp("smooth"))
+    return compared_systems.smooth_recording(tmp_path_factory.mktemp("smooth"))
 
 
 @pytest.fixture(scope="session")
 def smooth_frames(smooth_recording: "Recording") -> "TrainingFrames":
     """The same, as compared systems are given them."""
-    import compared
+    import compared_systems
 
-    return compared.smooth_frames(smooth_recording)
+    return compared_systems.smooth_frames(smooth_recording)
 
 
 @pytest.fixture(scope="session")

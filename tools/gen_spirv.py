@@ -4,7 +4,7 @@ import checkout  # noqa: F401
 from check_shaders import entry_points
 from compiled_folder import CompiledFolder
 
-from mua.gpu import compile, compiled, glslang
+from mua.gpu import compile, glslang, packaged_spirv
 
 
 def sources() -> dict[str, str]:
@@ -12,7 +12,7 @@ def sources() -> dict[str, str]:
     found = {}
     for path, entry, stage in entry_points():
         texts, options = compile.made_from(path, entry, stage)
-        found[compiled.file_name(path, entry, stage)] = compiled.digest(texts.values(), options)
+        found[packaged_spirv.file_name(path, entry, stage)] = packaged_spirv.digest(texts.values(), options)
     return found
 
 
@@ -21,11 +21,11 @@ def codes() -> dict[str, bytes]:
     found = {}
     for path, entry, stage in entry_points():
         _, options = compile.made_from(path, entry, stage)
-        found[compiled.file_name(path, entry, stage)] = glslang.compile(path, options)
+        found[packaged_spirv.file_name(path, entry, stage)] = glslang.compile(path, options)
     return found
 
 
-SPIRV = CompiledFolder("gen_spirv.py", compiled.FOLDER, ".spv", "glslang", sources, codes)
+SPIRV = CompiledFolder("gen_spirv.py", packaged_spirv.FOLDER, ".spv", "glslang", sources, codes)
 
 if __name__ == "__main__":
     SPIRV.run(__doc__)

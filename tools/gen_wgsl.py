@@ -17,7 +17,7 @@ from wgsl_compile import OPTIONS, Shader, translate
 from wgsl_small import with_references, without_references
 
 from mua.errors import InputError
-from mua.gpu import compile, compiled
+from mua.gpu import compile, packaged_spirv
 from mua.gpu.reflect import BufferSlot, Constant, Interface
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -43,10 +43,10 @@ def sources() -> dict[str, str]:
     texts: dict[str, list[str]] = {}
     for path, entry, stage in entry_points():
         files, options = compile.made_from(path, entry, stage)
-        texts.setdefault(path.stem, []).append(compiled.digest(files.values(), options))
+        texts.setdefault(path.stem, []).append(packaged_spirv.digest(files.values(), options))
     for stem, (lender, _) in LENDERS.items():
         texts[stem] += texts[lender]
-    return {f"{stem}.js": compiled.digest(digests, tuple(OPTIONS)) for stem, digests in texts.items()}
+    return {f"{stem}.js": packaged_spirv.digest(digests, tuple(OPTIONS)) for stem, digests in texts.items()}
 
 
 def modules() -> dict[str, bytes]:

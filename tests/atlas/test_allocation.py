@@ -8,7 +8,7 @@ from patches import patch, plain, surfaces_of, uv_map
 from people import upright
 
 from mua.arrays import Array
-from mua.atlas.surfaces import Surfaces
+from mua.atlas.character_surfaces import Surfaces
 from mua.atlas.uv import build_atlas
 from mua.rig.expressions import Expressions
 from mua.rig.texel_map import build_texel_map

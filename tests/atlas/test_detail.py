@@ -9,8 +9,8 @@ from patches import grid_faces, grid_points
 from people import upright
 
 from mua.arrays import Array
+from mua.atlas.character_surfaces import Surfaces
 from mua.atlas.detail import BY_DEFAULT, LARGEST_SHARES, factors, read_detail
-from mua.atlas.surfaces import Surfaces
 from mua.atlas.texel_density import describe_texels
 from mua.atlas.uv import build_atlas
 from mua.cli.bake import main

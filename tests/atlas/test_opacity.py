@@ -7,8 +7,8 @@ import pytest
 from patches import patch, plain, points, ramp, surfaces_of, texels_and_colours, uv_map
 
 from mua.arrays import Array
+from mua.atlas.character_surfaces import Surfaces
 from mua.atlas.opacity import without_unseen
-from mua.atlas.surfaces import Surfaces
 from mua.atlas.uv import build_atlas
 from mua.errors import InputError
 from mua.kernels.splat_project import LEAST_OPACITY

@@ -6,8 +6,8 @@ from synthetic_avatar import synthetic_avatar
 
 from mua.asset.count import flops, parameters
 from mua.pose.encoding import PoseEncoding
-from mua.student.outline import Body, Outline, outline
 from mua.student.settings import PAPER_SIZES, preset
+from mua.student.shapes import Body, Outline, outline
 
 PAPER_PARAMETERS = 26.67e6  # paper, Tab. Comparison
 PAPER_FLOPS = 0.52e9

@@ -28,7 +28,7 @@ from mua.baking import pipeline
 from mua.baking.distillation import Baked
 from mua.baking.pipeline import bake, parts
 from mua.baking.plan import plan, split
-from mua.baking.recorded import recording_key
+from mua.baking.resumed_recording import recording_key
 from mua.baking.settings import BakeSettings
 from mua.baking.sources import load_character
 from mua.channels import ATTRIBUTES
@@ -323,7 +323,7 @@ run()
 @pytest.mark.skipif(sys.platform != "linux", reason="needs Linux, where a process with threads can fork")
 def test_a_command_records_in_a_fork_and_ends_in_the_same_bytes(baked: Baked, tmp_path: Path) -> None:
     output = tmp_path / "a.muaavatar"
-    ended = python(COMMAND, "--device", "cpu", "-o", output, PYTHONPATH=os.pathsep.join(sys.path))
+    ended = python(COMMAND, "--device", "cpu", "--jobs", "1", "-o", output, PYTHONPATH=os.pathsep.join(sys.path))
     assert output.read_bytes() == baked.output.read_bytes(), ended.err
     assert ended.out.count("forked\n") == (not torch.cuda.is_available())
     assert [line for line in ended.out.splitlines() if line in ("character", "recording")] == ["character", "recording"]

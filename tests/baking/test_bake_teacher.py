@@ -28,7 +28,7 @@ def small(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(teaching.PRESETS, "tiny", FEW)
     ranks, few = Ranks(2, 2, 2), Schedule(steps=2, batch=2, lr=1e-3)
     student = replace(STUDENTS["tiny"], texels=64, frames=4, geometry=ranks, appearance=ranks, components=2, hidden=8)
-    monkeypatch.setitem(STUDENTS, "tiny", replace(student, regression=few, finetune=few, sweeps=1))
+    monkeypatch.setitem(STUDENTS, "tiny", replace(student, regression=few, finetune=few, sweeps=1, pictures=2))
 
 
 @pytest.mark.usefixtures("small", "forked")

@@ -16,9 +16,9 @@ from silent import Silent
 from mua import rotation
 from mua.asset.avatar import Avatar
 from mua.avatar.decode import Splats
-from mua.baking.evaluate import TRAINING, Errors
 from mua.baking.pipeline import Baked, bake
 from mua.baking.settings import BakeSettings
+from mua.baking.student_errors import TRAINING, Errors
 from mua.evaluation.entries import avatar_entries
 from mua.evaluation.images import Studio
 from mua.evaluation.scores import choose_frames, score

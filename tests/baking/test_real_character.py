@@ -6,9 +6,9 @@ import pytest
 from shared_data import SharedData
 from silent import Silent
 
-from mua.baking.evaluate import TRAINING
 from mua.baking.pipeline import bake
 from mua.baking.settings import BakeSettings
+from mua.baking.student_errors import TRAINING
 from mua.student.settings import preset
 
 LEAST_TRAINING = 0.80  # share of the variance about the mean texture

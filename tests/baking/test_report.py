@@ -11,8 +11,8 @@ import typer
 from rich.console import Console
 
 from mua.baking.distillation import Baked
-from mua.baking.evaluate import Errors, Picture, held_out_errors
 from mua.baking.report import HELD_OUT, Stored, as_json, closing, markdown, missed, shortfalls, table
+from mua.baking.student_errors import Errors, Picture, held_out_errors
 from mua.cli.display import UNEXPLAINED, Display, show
 from mua.pose.clip import Clip
 from mua.recording import RecordedClip, WholeFrame

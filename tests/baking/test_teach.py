@@ -21,7 +21,7 @@ from small_teachers import FEW
 import mua
 from mua.baking import teacher_stages
 from mua.capture import open_capture
-from mua.capture.outline import posed_template
+from mua.capture.silhouette import posed_template
 from mua.capture.write import write_capture
 from mua.channels import CHANNELS
 from mua.errors import InputError

@@ -21,7 +21,7 @@ from torch import Tensor
 import mua
 from mua.baking import teacher_stages
 from mua.capture import open_capture
-from mua.capture.outline import pixels, posed_template
+from mua.capture.silhouette import pixels, posed_template
 from mua.capture.write import write_capture
 from mua.motion.poses_file import read_poses, write_poses
 from mua.splatting import perceptual

@@ -16,7 +16,7 @@ import pytest
 from mua.asset.write import write
 from mua.bench.counts import as_json, count
 from mua.bench.devices import DEVICES
-from mua.bench.model import ENDS, kernels_ms
+from mua.bench.frame_model import ENDS, kernels_ms
 from mua.bench.random_avatar import random_avatar
 from mua.bench.work import DECODING, Work
 from mua.gpu import Device

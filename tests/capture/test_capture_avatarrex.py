@@ -16,7 +16,7 @@ from tube import tube
 
 from mua.arrays import Array
 from mua.capture import open_capture
-from mua.capture.outline import pixels
+from mua.capture.silhouette import pixels
 from mua.errors import InputError
 from mua.motion.poses_file import read_poses, write_poses
 from mua.pose.clip import Clip

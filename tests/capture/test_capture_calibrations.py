@@ -15,8 +15,8 @@ from scipy.spatial.transform import Rotation
 from mua.arrays import Array
 from mua.capture import Capture, open_capture
 from mua.capture.conventions import read_axes
-from mua.capture.outline import pixels
 from mua.capture.readers.calibrations import read_cameras
+from mua.capture.silhouette import pixels
 from mua.errors import InputError
 from mua.player.video import write_video
 

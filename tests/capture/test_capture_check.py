@@ -17,7 +17,7 @@ from PIL import Image
 from scipy.ndimage import distance_transform_edt
 
 from mua.arrays import Array
-from mua.capture import Capture, camera_fit, outline, sheet, write_capture
+from mua.capture import Capture, camera_fit, sheet, silhouette, write_capture
 from mua.capture.camera import CaptureCamera
 from mua.capture.check import Checked, check_capture
 from mua.capture.fit import Posed, Seen, chosen_frames, look_at
@@ -33,7 +33,7 @@ Z_UP = np.array([[1.0, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]])  # 
 def _kept_outlines() -> Iterator[None]:
     """Outlines of the same vertices in the same camera are drawn once: captures here differ in few views."""
     drawn: dict[bytes, Array] = {}
-    draw = outline.fine_silhouette
+    draw = silhouette.fine_silhouette
 
     def kept(*asked: Any) -> Array:
         key = hashlib.sha256(pickle.dumps(asked)).digest()
@@ -42,7 +42,7 @@ def _kept_outlines() -> Iterator[None]:
         return drawn[key]
 
     with pytest.MonkeyPatch.context() as patch:
-        for module in (outline, camera_fit):
+        for module in (silhouette, camera_fit):
             patch.setattr(module, "fine_silhouette", kept)
         yield
 

@@ -10,11 +10,11 @@ from commands import Commands
 
 from mua import rotation
 from mua.arrays import Array
-from mua.atlas.surfaces import Surfaces
+from mua.atlas.character_surfaces import Surfaces
 from mua.capture.keypoint_fit import fit_keypoints
-from mua.capture.outline import posed_template
 from mua.capture.readers.keypoints import Keypoints
 from mua.capture.readers.keypoints.trc import read_trc
+from mua.capture.silhouette import posed_template
 from mua.characters.read import read_surfaces
 from mua.errors import InputError
 from mua.motion.poses_file import read_poses

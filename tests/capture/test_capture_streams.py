@@ -10,8 +10,8 @@ from commands import Commands
 
 from mua.arrays import Array
 from mua.capture import Capture, open_capture
-from mua.capture.outline import pixels
 from mua.capture.readers.calibration_files import CAPTURY, SKELETOOL, read_calibration
+from mua.capture.silhouette import pixels
 from mua.errors import InputError
 from mua.player.video import write_video
 

@@ -10,8 +10,8 @@ from skeletool_files import REST, CharacterFiles, sway
 from subjects import FIRST, FRAMES, write_subject
 
 from mua.capture import open_capture
-from mua.capture.outline import posed_template
 from mua.capture.readers.streams import MASKS
+from mua.capture.silhouette import posed_template
 
 CORNER_BOUND = 5e-6  # metres: float32 weights, and vertices of one place that are welded
 

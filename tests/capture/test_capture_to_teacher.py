@@ -15,7 +15,7 @@ import mua
 from mua.arrays import Array
 from mua.baking import teacher_stages
 from mua.capture import Capture, open_capture
-from mua.capture.outline import posed_template
+from mua.capture.silhouette import posed_template
 from mua.teacher import TeacherFrame
 from mua.teachers.trained import settings
 from mua.teachers.trained.teacher import TrainedTeacher

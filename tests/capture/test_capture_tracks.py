@@ -13,7 +13,7 @@ from mua.arrays import Array
 from mua.capture import Capture, open_capture
 from mua.capture.check import check_capture
 from mua.capture.lens import distorted, undistorted
-from mua.capture.outline import pixels, posed_template
+from mua.capture.silhouette import pixels, posed_template
 from mua.capture.tracks import read_tracks
 from mua.capture.write import write_capture
 from mua.errors import InputError

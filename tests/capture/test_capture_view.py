@@ -14,8 +14,8 @@ from PIL import Image
 from mua.arrays import Array
 from mua.capture import Capture, CaptureCamera, video
 from mua.capture.lens import distorted, undistort
-from mua.capture.outline import pixels
 from mua.capture.pictures import as_mask
+from mua.capture.silhouette import pixels
 from mua.capture.smaller import area_average
 from mua.capture.video import video_frames
 from mua.capture.view import RawFrame, person, view_of

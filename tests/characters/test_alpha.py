@@ -9,7 +9,7 @@ from fbx_files import figure, picture
 from gltf_files import PICTURE, textured
 from scenes import HERE, part, scene
 
-from mua.atlas.surfaces import Surfaces
+from mua.atlas.character_surfaces import Surfaces
 from mua.characters.alpha import read_alphas
 from mua.characters.assemble import assemble
 from mua.characters.read import read_surfaces

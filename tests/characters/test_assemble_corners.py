@@ -10,7 +10,7 @@ from scenes import BIND, GREY, HERE, at, part, placed, scene
 from scipy.spatial.transform import Rotation
 
 from mua.arrays import Array
-from mua.atlas.surfaces import Surfaces
+from mua.atlas.character_surfaces import Surfaces
 from mua.characters.assemble import assemble
 from mua.scene import Material, Part, Skin
 

@@ -21,7 +21,7 @@ from scenes import (
 )
 
 from mua.characters.assemble import assemble
-from mua.rig.stretched import stretched
+from mua.rig.animated_scale import stretched
 from mua.scene import Motion, Scene, Skin
 
 

@@ -9,7 +9,7 @@ from scenes import HERE, at
 from scipy.spatial.transform import Rotation
 from test_upright import whole
 
-from mua.atlas.surfaces import Surfaces
+from mua.atlas.character_surfaces import Surfaces
 from mua.characters.assemble import assemble
 from mua.characters.facing import Facing
 from mua.pose.joint_names import roles

@@ -17,7 +17,7 @@ from pxr import Gf, Sdf, Usd, UsdGeom, UsdShade
 from usd_files import edited, write_character
 
 from mua.arrays import Array
-from mua.atlas.surfaces import Surfaces
+from mua.atlas.character_surfaces import Surfaces
 from mua.characters.read import read_character, read_surfaces
 
 CELLS = 8  # texels along a side of the picture, of which each has its own colour

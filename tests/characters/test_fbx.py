@@ -11,7 +11,7 @@ from gltf_files import BONES, POINTS, TRIANGLES, Glb, animate, assert_is_column,
 from gltf_files import read as read_glb
 
 from mua import rotation
-from mua.atlas.surfaces import Surfaces
+from mua.atlas.character_surfaces import Surfaces
 from mua.characters.fbx.process import scenes_of
 from mua.characters.read import read_animation, read_surfaces
 from mua.errors import InputError

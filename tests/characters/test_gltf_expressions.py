@@ -8,7 +8,7 @@ import pytest
 from gltf_files import FLOAT_BOUND, HEIGHTS, POINTS, TRIANGLES, Glb, animate, body, primitive, read
 
 from mua.arrays import Array
-from mua.atlas.surfaces import Surfaces
+from mua.atlas.character_surfaces import Surfaces
 from mua.characters.facing import Facing
 from mua.characters.figure_size import FigureSize
 from mua.characters.read import read_character, read_surfaces

@@ -7,7 +7,7 @@ import pytest
 from gltf_files import Glb, assert_is_column, body
 from people import chain
 
-from mua.atlas.surfaces import Surfaces
+from mua.atlas.character_surfaces import Surfaces
 from mua.characters.gltf.vrm import ROLES
 from mua.characters.read import read_animation, read_character, read_surfaces
 from mua.errors import InputError

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scenes import HERE, in_units, part, scene
 
-from mua.atlas.surfaces import Surfaces
+from mua.atlas.character_surfaces import Surfaces
 from mua.characters.assemble import assemble
 from mua.characters.correction import ADULT, plausible_unit
 from mua.characters.figure_size import FigureSize

@@ -130,12 +130,6 @@ SKELETON = {
 }
 
 
-@pytest.mark.parametrize("fault", SKELETON)
-def test_a_skeleton_that_is_wrong_is_named(character: Path, fault: str) -> None:
-    before, after, sentence = SKELETON[fault]
-    assert_refused(character, ".skeleton", before, after, sentence)
-
-
 FAULTS = {
     "no skin": (".character", "tube.skin", "arm.skin", "line 7: skin is 'arm.skin': there is no such file beside it"),
     "no pose": (".character", "pose\n  tube.motion\n", "", "names no pose, expected skeleton, mesh, skin, pose"),
@@ -156,12 +150,12 @@ FAULTS = {
 }
 
 
+FAULTS |= {f"skeleton, {name}": (".skeleton", *fault) for name, fault in SKELETON.items()}
+
+
 @pytest.mark.parametrize("fault", FAULTS)
 def test_a_character_that_is_wrong_is_named(character: Path, fault: str) -> None:
-    assert_refused(character, *FAULTS[fault])
-
-
-def assert_refused(character: Path, suffix: str, before: str, after: str, sentence: str) -> None:
+    suffix, before, after, sentence = FAULTS[fault]
     file = character.with_suffix(suffix)
     text = file.read_text()
     assert before in text

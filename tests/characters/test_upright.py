@@ -8,7 +8,7 @@ from people import person
 from scenes import GREY, HERE, at, part
 from scipy.spatial.transform import Rotation
 
-from mua.atlas.surfaces import Surfaces
+from mua.atlas.character_surfaces import Surfaces
 from mua.characters.animation import bare_animation
 from mua.characters.assemble import assemble
 from mua.pose.joint_names import roles

@@ -9,7 +9,7 @@ from pxr import Gf, Sdf, Usd, UsdGeom, UsdShade, UsdSkel, UsdUtils, Vt
 from usd_files import JOINTS, edited, preview, write_character
 
 from mua import rotation
-from mua.atlas.surfaces import Surfaces
+from mua.atlas.character_surfaces import Surfaces
 from mua.characters.read import read_surfaces
 from mua.errors import InputError
 from mua.motion.read import read_motion

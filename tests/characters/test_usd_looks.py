@@ -9,7 +9,7 @@ from PIL import Image
 from pxr import Gf, Sdf, Usd, UsdGeom, UsdShade, UsdSkel, Vt
 from usd_files import edited, preview, write_character
 
-from mua.atlas.surfaces import Surfaces
+from mua.atlas.character_surfaces import Surfaces
 from mua.characters.read import read_surfaces
 from mua.errors import InputError
 

@@ -22,7 +22,7 @@ from vmc_senders import bundle
 import mua.gpu
 from mua.arrays import Array
 from mua.errors import InputError
-from mua.live.live import EASING
+from mua.live.live_pose import EASING
 from mua.live.receiver import LOOPBACK, Address, Receiver
 from mua.player import viewer, window
 from mua.player.panel import WIDTH

@@ -8,6 +8,8 @@ import pytest
 from fake_adb import FakeAdb, serving
 from fake_headset import FakeHeadset
 
+from mua.deploy.headset import connect
+
 
 def real_adb(server: FakeAdb, *arguments: str) -> subprocess.CompletedProcess[str]:
     command = [adbutils.adb_path(), "-P", str(server.port), *arguments]
@@ -34,3 +36,10 @@ def test_real_adb_hears_refusals(monkeypatch: pytest.MonkeyPatch, tmp_path: Path
         assert (refused.returncode, "No space left" in refused.stderr) == (1, True)
         assert "unauthorized" in real_adb(server, "-s", "B", "shell", "getprop").stderr
         assert "not found" in real_adb(server, "-s", "C", "shell", "getprop").stderr
+
+
+def test_lines_of_a_log_come_whole_however_they_are_cut_on_their_way(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("mua.deploy.headset.CHUNK", 7)
+    lines = ["MUA-BENCH 1 START 2", "", "a line of more than seven bytes"]
+    with serving(monkeypatch, FakeHeadset(log=lines, log_ends=True)):
+        assert list(connect().log("Unity", silence=5.0)) == lines

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from captures import SIDE, TEXELS, make_capture, motions
 from commands import Commands
-from compared import SETTINGS as QUICK
+from compared_systems import SETTINGS as QUICK
 from empty_entries import nothing
 from PIL import Image
 from small_teachers import FEW
@@ -22,9 +22,9 @@ from mua.asset.write import write
 from mua.avatar.decode import Splats, pose_splats
 from mua.capture import open_capture
 from mua.errors import InputError
-from mua.evaluation import filmed, filmed_report
+from mua.evaluation import capture_report, capture_scores
+from mua.evaluation.capture_scores import TRAINED, UNSEEN, FilmedEntry, Judged, Likeness, Shot, judge, likeness, shots
 from mua.evaluation.cost import Cost
-from mua.evaluation.filmed import TRAINED, UNSEEN, FilmedEntry, Judged, Likeness, Shot, judge, likeness, shots
 from mua.pose.clip import Clip
 from mua.pose.resample import resample
 from mua.pose.skeleton import Skeleton
@@ -105,24 +105,24 @@ def judged() -> list[Judged]:
 
 def test_tables_have_a_row_for_each_entry_and_a_dash_for_what_is_not_there() -> None:
     entries = [FilmedEntry("a", nothing, Cost(2_500_000, 30_000_000)), FilmedEntry("b", nothing)]
-    text = filmed_report.markdown(judged(), entries, ["Two images."])
+    text = capture_report.markdown(judged(), entries, ["Two images."])
     assert "- Two images." in text
     assert "| a | 20.00 | 0.9000 | 0.1000 | - | - | - | 2.500 | 30.00 |" in text
     assert "| b | 30.00 | 0.9000 | 0.1000 | - | - | - | - | - |" in text
     assert "LPIPS" not in text
-    lines = list(csv.DictReader(filmed_report.as_csv(judged()).splitlines()))
+    lines = list(csv.DictReader(capture_report.as_csv(judged()).splitlines()))
     assert [line["entry"] for line in lines] == ["a", "b", "a", "b"]
-    assert filmed_report.contact_sheet(judged(), UNSEEN, ["a", "b"], "b") is None
-    sheet = filmed_report.contact_sheet(judged(), TRAINED, ["a", "b"], "b")
+    assert capture_report.contact_sheet(judged(), UNSEEN, ["a", "b"], "b") is None
+    sheet = capture_report.contact_sheet(judged(), TRAINED, ["a", "b"], "b")
     assert sheet is not None
-    assert sheet.width == 4 * filmed_report.LEAST_WIDTH
+    assert sheet.width == 4 * capture_report.LEAST_WIDTH
 
 
 def test_the_command_compares_a_teacher_with_the_pictures(
     capture: Path, teacher: Path, tmp_path: Path, command: Commands, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(sys.modules, "mua_research", None)  # only systems need it
-    monkeypatch.setattr("mua.cli.filmed_evaluation.Lpips", lambda path: lambda image, truth: float(path.read_text()))
+    monkeypatch.setattr("mua.cli.capture_evaluation.Lpips", lambda path: lambda image, truth: float(path.read_text()))
     (tmp_path / "weights").write_text("0.25")
     given: tuple[str | Path, ...] = ("--teacher", teacher, "--frames", "1", "--lpips-weights", tmp_path / "weights")
     given = (*given, "--images", tmp_path / "images")
@@ -131,8 +131,8 @@ def test_the_command_compares_a_teacher_with_the_pictures(
     lines = list(csv.DictReader((tmp_path / "evaluation" / "results.csv").read_text().splitlines()))
     assert {(line["camera"], float(line["lpips"])) for line in lines} == {("above", 250.0)}
     text = (tmp_path / "evaluation" / "results.md").read_text()
-    assert f"| {filmed.BASELINE} |" in text
-    assert f"| {filmed.TEACHER} |" in text
+    assert f"| {capture_scores.BASELINE} |" in text
+    assert f"| {capture_scores.TEACHER} |" in text
     for name in ("training_poses.png", "clips_held_out.png"):
         with Image.open(tmp_path / "evaluation" / name) as sheet:
             assert sheet.height > 30
@@ -195,7 +195,7 @@ def test_the_command_trains_systems_at_several_sizes_and_once(
     within = {name for name, one in rows.items() if one["system"] == "linear" and one["flops"] <= rows["ours"]["flops"]}
     assert {equal["name"], "linear"} <= within
     assert {one["rival"] for one in results["standings"]} <= within
-    assert len(results["standings"]) == len(filmed.SPLITS)
+    assert len(results["standings"]) == len(capture_scores.SPLITS)
     assert "learnt" not in rows["ours"]
     assert "on 3 frames of the teacher at 64 texels" in (output / "results.md").read_text()
     with Image.open(output / "curve.png") as plot:
@@ -231,18 +231,21 @@ def moved(skeleton: Skeleton) -> Skeleton:
 
 def test_a_teacher_of_another_template_is_refused(capture: Path, teacher: Path) -> None:
     template = open_capture(capture).surfaces.skeleton
-    assert [one.name for one in filmed.teacher_entries(teacher, template)] == [filmed.BASELINE, filmed.TEACHER]
+    assert [one.name for one in capture_scores.teacher_entries(teacher, template)] == [
+        capture_scores.BASELINE,
+        capture_scores.TEACHER,
+    ]
     renamed = replace(template, names=tuple(f"{name}_" for name in template.names))
     with pytest.raises(InputError, match=r"--teacher .*: its joints are not those of the capture's template"):
-        filmed.teacher_entries(teacher, renamed)
+        capture_scores.teacher_entries(teacher, renamed)
     with pytest.raises(InputError, match=r"--teacher .*: its joints are up to 0\.25 m from those of the capture's"):
-        filmed.teacher_entries(teacher, moved(template))
+        capture_scores.teacher_entries(teacher, moved(template))
 
 
 def test_an_avatar_shows_a_capture_at_another_rate_at_the_same_moment(tmp_path: Path) -> None:
     avatar = synthetic_avatar()
     write(tmp_path / "a.muaavatar", avatar, storage="f32")
-    entry = filmed.avatar_entry(tmp_path / "a.muaavatar", avatar.rig.skeleton)
+    entry = capture_scores.avatar_entry(tmp_path / "a.muaavatar", avatar.rig.skeleton)
     clip = avatar.clips[0]
     rate = avatar.encoding.rate
     one = entry.show(resample(clip, rate), 3)

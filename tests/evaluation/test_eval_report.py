@@ -7,10 +7,10 @@ from dataclasses import replace
 import pytest
 from rich.console import Console
 
-from mua.evaluation import entries, filmed_report, report
+from mua.evaluation import capture_report, entries, report
+from mua.evaluation.capture_scores import FilmedEntry
 from mua.evaluation.cost import Cost
 from mua.evaluation.entries import Entry, Picture
-from mua.evaluation.filmed import FilmedEntry
 from mua.evaluation.metrics import Scores
 from mua.evaluation.scores import Result, Sample
 from mua.recording import WholeFrame
@@ -61,7 +61,7 @@ def test_costs_are_printed_in_the_units_of_their_headings() -> None:
     shown = dict(zip(report.COSTS, report.costs_of(result("a", 40.0, costs)), strict=True))
     assert shown == {"GFLOPs": "1.234", "Param (M)": "2.50", "MB": "4.2", "FPS": "31.3"}
     entry = FilmedEntry("a", lambda clip, frame: pytest.fail("nothing is drawn"), costs)
-    assert dict(zip(filmed_report.COSTS, filmed_report.rows([], [entry])[0][-2:], strict=True)) == {
+    assert dict(zip(capture_report.COSTS, capture_report.rows([], [entry])[0][-2:], strict=True)) == {
         "M parameters": "2.500",
         "MFLOP": "1234.00",
     }

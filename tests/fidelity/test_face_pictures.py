@@ -15,7 +15,7 @@ from mua.characters.read import read_character
 from mua.fidelity import faces, report, source_faces
 from mua.fidelity.canvas import Area, opened
 from mua.fidelity.face_sheet import face_sheet
-from mua.fidelity.posing import Poser
+from mua.fidelity.source_pose import Poser
 from mua.fidelity.splats import SplatPainter
 from mua.rig.character import Character
 from mua.teachers.simulated.still import StillTeacher

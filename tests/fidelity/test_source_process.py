@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from face_files import grinning
 
-from mua.atlas.surfaces import Surfaces
+from mua.atlas.character_surfaces import Surfaces
 from mua.characters.read import read_surfaces
 from mua.fidelity import source_process
 from mua.fidelity.canvas import opened
-from mua.fidelity.posing import Poser
 from mua.fidelity.source_faces import source_faces
+from mua.fidelity.source_pose import Poser
 from mua.fidelity.source_process import SourceProcess
 
 

@@ -26,6 +26,13 @@ def test_reads_bundles_within_bundles_in_their_order() -> None:
     assert [found.address for found in messages(outer.build().dgram)] == ["/0", "/after", "/1", "/after"]
 
 
+def test_reads_what_follows_a_blob_of_any_length() -> None:
+    for length in range(1, 7):
+        blob = bytes(range(1, length + 1))
+        (found,) = messages(message("/a", blob, 7, "end"))
+        assert found.arguments == (blob, 7, "end")
+
+
 def test_reads_a_message_without_types() -> None:
     (found,) = messages(b"/a\0\0")
     assert found == ("/a", ())

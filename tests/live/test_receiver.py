@@ -11,7 +11,7 @@ from shared_data import SharedData
 from vmc_senders import Program, Sender, humanoid, message, performing
 
 from mua.errors import InputError
-from mua.live.live import EASING, Live
+from mua.live.live_pose import EASING, Live
 from mua.live.receiver import Address, Receiver
 from mua.motion.bvh import read_bvh
 from mua.pose.encoding import PoseEncoding

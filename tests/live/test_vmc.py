@@ -10,7 +10,7 @@ from vmc_senders import Sender, bundle, frames_of, humanoid, message, performing
 
 from mua.live.bones import BONES
 from mua.live.vmc import GONE, LONGEST_NAME, MOST_EXPRESSIONS, QUIET, Assembler, Frame
-from mua.motion.source import SourceMotion
+from mua.motion.source_motion import SourceMotion
 
 SINGLE = 4 * float(np.finfo(np.float32).eps)  # OSC's numbers, a division by the length
 UNTURNED = (0.0, 0.0, 0.0, 1.0)

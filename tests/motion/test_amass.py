@@ -11,7 +11,7 @@ from mua.errors import InputError
 from mua.motion.amass import nominal_skeleton, read_amass
 from mua.motion.face import read_face, with_face
 from mua.motion.load import load_motions
-from mua.motion.source import SourceMotion
+from mua.motion.source_motion import SourceMotion
 from mua.pose.signed_expressions import UNIT
 
 BOUND = 64 * np.finfo(float).eps  # sine, cosine and one quaternion product

@@ -9,7 +9,7 @@ from shared_data import SharedData
 
 from mua.errors import InputError
 from mua.motion.bvh import read_bvh
-from mua.motion.source import SourceMotion
+from mua.motion.source_motion import SourceMotion
 
 # Products of at most 40 rotations and as many additions of offsets of up to 200 units: 40 x 16 eps x 200.
 BOUND = 40 * 16 * np.finfo(float).eps * 200

@@ -14,7 +14,7 @@ from mua.avatar.decode import decode_clip_frame
 from mua.baking.portrait import THREE_QUARTER, portrait
 from mua.motion.facing import front_of
 from mua.motion.load import load_motions
-from mua.motion.rest import frame
+from mua.motion.rest_alignment import frame
 from mua.pose.skeleton import Skeleton
 
 ROUNDING = 1e-6  # radians

@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from mua.motion.joint_places import roles_by_place
 from mua.motion.match import match_joints
-from mua.motion.source import SourceMotion
+from mua.motion.source_motion import SourceMotion
 from mua.pose.joint_names import roles
 from mua.pose.skeleton import Skeleton
 

@@ -9,7 +9,7 @@ from people import person, retarget, still, upright, walk, world
 from mua.motion.match import match_joints
 from mua.motion.planted_feet import Feet, plant_feet
 from mua.motion.quality import MotionQuality, measure_motion
-from mua.motion.source import SourceMotion
+from mua.motion.source_motion import SourceMotion
 from mua.pose.clip import Clip
 from mua.pose.skeleton import Skeleton
 

@@ -11,7 +11,7 @@ from mua import rotation
 from mua.motion.head_and_hands import head_flaws
 from mua.motion.match import match_joints
 from mua.motion.quality import MotionQuality, measure_motion
-from mua.motion.source import SourceMotion
+from mua.motion.source_motion import SourceMotion
 from mua.pose.clip import Clip
 from mua.pose.skeleton import Skeleton
 

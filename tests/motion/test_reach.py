@@ -8,7 +8,7 @@ from people import person, retarget, walk
 from mua.motion.match import match_joints
 from mua.motion.quality import MotionQuality, measure_motion
 from mua.motion.reach import WRONG
-from mua.motion.source import SourceMotion
+from mua.motion.source_motion import SourceMotion
 from mua.pose.clip import Clip
 from mua.pose.skeleton import Skeleton
 

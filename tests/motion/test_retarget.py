@@ -25,7 +25,7 @@ from scipy.spatial.transform import Rotation
 
 from mua import rotation
 from mua.errors import InputError
-from mua.motion.source import SourceMotion
+from mua.motion.source_motion import SourceMotion
 from mua.pose.skeleton import Skeleton
 
 

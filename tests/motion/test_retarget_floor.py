@@ -18,7 +18,7 @@ from people import (
 
 from mua.motion.match import match_joints
 from mua.motion.quality import measure_motion
-from mua.motion.source import SourceMotion
+from mua.motion.source_motion import SourceMotion
 
 LYING = 0.01  # metres: feet of the walk are this level; without a floor in the rest pose its lowest ones make one
 

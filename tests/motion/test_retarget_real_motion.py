@@ -8,7 +8,7 @@ from shared_data import SharedData
 from mua.characters.read import read_surfaces
 from mua.motion.amass import nominal_skeleton
 from mua.motion.bvh import read_bvh
-from mua.motion.source import SourceMotion
+from mua.motion.source_motion import SourceMotion
 from mua.pose.skeleton import Skeleton
 
 CMU_FACING = 1e-6  # radians by which the hips of CMU's zero pose are turned from facing +Z: rounding of its offsets

@@ -24,7 +24,7 @@ from scipy.spatial.transform import Rotation
 from mua import rotation
 from mua.motion.match import match_joints
 from mua.motion.quality import measure_motion
-from mua.motion.source import SourceMotion
+from mua.motion.source_motion import SourceMotion
 from mua.pose.clip import Clip
 from mua.pose.skeleton import Skeleton
 

@@ -18,7 +18,7 @@ from people import (
 from mua import rotation
 from mua.motion import retarget as retargeting
 from mua.motion.match import match_joints
-from mua.motion.source import SourceMotion
+from mua.motion.source_motion import SourceMotion
 from mua.pose.skeleton import Skeleton
 
 

@@ -8,7 +8,7 @@ from people import ANGLE_BOUND, bone, person, retarget, upright, walk, world
 
 from mua.motion.limb_parts import ARM, LEG, parts_of
 from mua.motion.match import match_joints
-from mua.motion.source import SourceMotion
+from mua.motion.source_motion import SourceMotion
 from mua.pose.skeleton import Skeleton
 
 

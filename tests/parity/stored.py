@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 from mua.arrays import Array
 from mua.asset.tensors import Element, pack, reals
-from mua.gpu.stored import Layout, upload_words
+from mua.gpu.tensor_words import Layout, upload_words
 
 STORAGES: tuple[Element, ...] = ("f32", "f16", "i8")
 

@@ -29,10 +29,10 @@ from mua.errors import InputError
 from mua.gpu import Device
 from mua.kernels.splat_project import AWAY, facing
 from mua.player.buffers import AvatarBuffers
+from mua.player.cpu_image import Reference
 from mua.player.draw import SplatRenderer, draw_image, image_format
 from mua.player.frame import AvatarFrame
 from mua.player.offscreen import Offscreen
-from mua.player.picture import Reference
 from mua.player.splats import SplatFrame
 from mua.player.toggles import Toggles
 from mua.student.settings import preset

@@ -9,8 +9,8 @@ from synthetic_avatar import synthetic_avatar
 from mua.avatar.camera import Camera, perspective
 from mua.avatar.coarser import texel_length
 from mua.avatar.level_choice import LARGEST_TEXEL
+from mua.player.cpu_image import Reference
 from mua.player.levels import AUTO, FULL, Levels
-from mua.player.picture import Reference
 
 SCREEN = (64, 64)
 

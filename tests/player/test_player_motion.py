@@ -3,12 +3,15 @@
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from bvh_files import BVH
 from synthetic_avatar import synthetic_avatar
 
+from mua.arrays import Array
 from mua.errors import InputError
-from mua.player.motion import named_clip, player_clips, require_expressions
+from mua.live.receiver import Address, Receiver
+from mua.player.motion import live_of, named_clip, player_clips, require_expressions, with_weights
 
 FILE = Path("a.muaavatar")
 
@@ -41,6 +44,18 @@ def test_refuses_an_avatar_without_clips_and_a_name_that_is_none() -> None:
     assert named_clip(avatar.clips, "wave", source=FILE) is avatar.clips[0]
     with pytest.raises(InputError, match=r"--clip is 'jump'; a\.muaavatar holds wave"):
         named_clip(avatar.clips, "jump", source=FILE)
+
+
+def test_a_mapping_is_that_of_what_another_program_sends_too() -> None:
+    sentence = r"a\.muaavatar.*source joint 'Tail' does not exist"
+    with Receiver(Address(0)) as receiver, pytest.raises(InputError, match=sentence):
+        live_of(synthetic_avatar(), FILE, receiver, {"root": "Tail"})
+
+
+@pytest.mark.parametrize(("weights", "expected"), [(np.array([0.25, 0.5]), [1, 0.5]), (None, [1, 0])])
+def test_expressions_that_are_not_named_keep_the_weights_of_the_clip(weights: Array | None, expected: Array) -> None:
+    found = with_weights(("jawOpen", "mouthSmileLeft"), weights, {"jawOpen": 1.0})
+    np.testing.assert_array_equal(found, expected)
 
 
 def test_names_some_expressions_of_an_avatar_that_lacks_one() -> None:

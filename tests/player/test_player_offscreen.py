@@ -8,7 +8,7 @@ import pytest
 
 from mua.arrays import Array
 from mua.errors import InputError
-from mua.player.picture import over
+from mua.player.cpu_image import over
 from mua.player.video import write_video
 
 

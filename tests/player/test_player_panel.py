@@ -13,11 +13,11 @@ from rendercanvas.offscreen import RenderCanvas
 from vmc_senders import Program, bundle
 
 from mua.gpu import Device
-from mua.live.live import EASING
+from mua.live.live_pose import EASING
 from mua.live.receiver import Address, Receiver
 from mua.live.vmc import QUIET
 from mua.player.panel import WIDTH
-from mua.player.source import Source
+from mua.player.played_files import Source
 from mua.player.toggles import Toggles
 from mua.player.viewer import Viewer
 

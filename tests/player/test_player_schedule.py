@@ -15,9 +15,9 @@ from mua.gpu import Commands, Device
 from mua.player.buffers import AvatarBuffers
 from mua.player.channels import TEXEL_CHANNELS
 from mua.player.frame import AvatarFrame
+from mua.player.played_files import Source
 from mua.player.schedule import DecodeSchedule, Moment, Window
 from mua.player.session import Session
-from mua.player.source import Source
 
 FRAMES = 7  # frames of the clip
 HEADSET = 25 / 72  # frames of the avatar in a displayed one

@@ -18,11 +18,11 @@ from mua.asset.read import read
 from mua.cli.view_options import Asked, look_of
 from mua.errors import InputError
 from mua.gpu import Device
-from mua.live.live import EASING
+from mua.live.live_pose import EASING
 from mua.live.receiver import Address, Receiver
 from mua.player.focus import find_focus
+from mua.player.played_files import Source
 from mua.player.session import Session
-from mua.player.source import Source
 from mua.pose.components import read_components
 from mua.pose.descriptor import describe_window
 

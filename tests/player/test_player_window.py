@@ -24,7 +24,7 @@ from mua.cli.view_options import Asked, look_of
 from mua.errors import InputError
 from mua.gpu import Device
 from mua.player.panel import KEYS, WIDTH
-from mua.player.source import Source
+from mua.player.played_files import Source
 from mua.player.toggles import Toggles
 from mua.player.window import show
 

@@ -14,6 +14,7 @@ from together import errors, start
 from mua.channels import CHANNELS
 from mua.errors import InputError
 from mua.recording import PlannedClip, Recording, TeacherWriter, damage, parts, record
+from mua.recording.layout import SUM
 from mua.recording.parts import divide, first_texture, join_parts, part_directory, record_share, share
 
 
@@ -68,6 +69,32 @@ def test_any_number_of_processes_makes_the_same_files(whole: Recording, tmp_path
     assert_same(Recording(tmp_path / "1"), whole)
     assert content(tmp_path / "1") == content(tmp_path / "2") == content(tmp_path / "5")
     damage.check(tmp_path / "5", plan(synthetic_rig()), rate=RATE, whole=True)  # else the next run would record it anew
+
+
+def arrays(directory: Path) -> dict[int, int]:
+    """Bytes by file of all arrays but running sums."""
+    found = [path.stat() for path in directory.rglob("shards/*/*.npy") if path.name != SUM]
+    return {stat.st_ino: stat.st_size for stat in found}
+
+
+def test_joining_needs_no_room_for_a_second_copy(tmp_path: Path) -> None:
+    record_parts(tmp_path / "r", 2)
+    recorded = arrays(tmp_path)
+    join_parts(tmp_path / "r", plan(synthetic_rig()))
+    assert recorded
+    assert arrays(tmp_path / "r") == recorded
+
+
+def test_parts_are_joined_where_a_file_system_has_no_links(
+    whole: Recording, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(*_: Path) -> None:
+        raise OSError
+
+    record_parts(tmp_path / "r", 2)
+    monkeypatch.setattr(os, "link", refuse)
+    join_parts(tmp_path / "r", plan(synthetic_rig()))
+    assert_same(Recording(tmp_path / "r"), whole)
 
 
 def test_a_writer_goes_on_with_what_was_joined(tmp_path: Path) -> None:

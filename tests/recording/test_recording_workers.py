@@ -105,6 +105,20 @@ def test_any_number_of_workers_leaves_the_same_files(
     assert sorted(heard) == heard
 
 
+def test_each_worker_computes_with_one_thread(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Several with as many threads as there are cores hinder each other."""
+    program = tmp_path / "python"
+    program.write_text("#!/bin/sh\nenv\n")
+    program.chmod(0o755)
+    monkeypatch.setattr(sys, "executable", str(program))
+    monkeypatch.setenv("OMP_NUM_THREADS", "7")
+    worker = workers.Worker.start()
+    assert worker.process.stdout is not None
+    seen = worker.process.stdout.read().decode().splitlines()
+    worker.end()
+    assert {f"{name}_NUM_THREADS=1" for name in ("OMP", "OPENBLAS", "MKL")} <= set(seen)
+
+
 @pytest.mark.usefixtures("forked")
 def test_everything_is_on_the_disk_once_the_parts_are_joined(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Workers do not wait for it."""

@@ -7,13 +7,13 @@ from typing import Any
 import numpy as np
 import pytest
 import torch
-from compared import trained
+from compared_systems import trained
 
 from mua.asset import count
 from mua.channels import APPEARANCE, GEOMETRY
 from mua.student.export import export_branches, export_coarse
 from mua.student.model import Student
-from mua.student.outline import wavelet_of
+from mua.student.shapes import wavelet_of
 from mua_research.bands import BandNetwork, Convolutions, Lines, scale_branch, start_convolutions, texture_encoding
 from mua_research.network import NetworkSystem
 from mua_research.system import Budget, TrainingFrames

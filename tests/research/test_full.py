@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 import torch
-from compared import SETTINGS, explained, few, trained
+from compared_systems import SETTINGS, explained, few, trained
 from torch import Tensor
 
 from mua.student.conditioned import Conditioned

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import torch
-from compared import HELD_OUT, SETTINGS, STEPS, trained
+from compared_systems import HELD_OUT, SETTINGS, STEPS, trained
 from synthetic_avatar import synthetic_rig
 
 from mua import rotation

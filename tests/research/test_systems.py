@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import torch
-from compared import EXPLAINED, STEPS, explained, few, trained
+from compared_systems import EXPLAINED, STEPS, explained, few, trained
 from torch import Tensor
 
 from mua.errors import InputError

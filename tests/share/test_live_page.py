@@ -18,11 +18,11 @@ from people import person
 from vmc_senders import BODY, bundle
 
 from mua.live.bones import AT_REST, BONES
-from mua.live.live import Live
+from mua.live.live_pose import Live
 from mua.live.receiver import Latency
 from mua.live.vmc import Frame
 from mua.pose.encoding import PoseEncoding
-from mua.share.live import PATH, Feed, live_site
+from mua.share.live_feed import PATH, Feed, live_site
 from mua.share.server import serving
 from mua.share.site import Shown, player_site
 from mua.share.websocket import MOST, WebSocket, accept

@@ -106,6 +106,16 @@ def test_the_box_of_the_figure_fills_width_and_height_of_the_poster(avatar_file:
         assert [np.abs(x / w).max(), np.abs(y / w).max()] == pytest.approx([FILL, FILL], rel=0.01)
 
 
+def test_poster_and_page_show_the_front_that_the_first_frame_has() -> None:
+    avatar = synthetic_avatar()
+    first = avatar.clips[0].cut(np.zeros(1, int))
+    turned = first.rotations.copy()
+    turned[:, 0] = multiply(np.array([np.sqrt(0.5), 0, np.sqrt(0.5), 0]), turned[:, 0])
+    turning = first.then(replace(first, rotations=turned))
+    assert front(avatar, turning) == front(avatar, first)
+    assert np.array_equal(view(avatar, turning).view, view(avatar, first).view)
+
+
 def test_poster_and_page_begin_with_the_clip_asked_for(command: Commands, tmp_path: Path) -> None:
     avatar = synthetic_avatar()
     clip, root = avatar.clips[0], avatar.rig.skeleton.root

@@ -20,8 +20,8 @@ from mua.errors import InputError
 from mua.recording import Recording
 from mua.student.budget import FRONTIER, cost, within_budget
 from mua.student.distil import body_of
-from mua.student.outline import Body
 from mua.student.settings import Budget, Settings, Sizes, preset
+from mua.student.shapes import Body
 
 PERSON = Body(descriptor=1299, inputs=981, vertices=5508, texels=300_000)
 ROUNDING = 100 * float(np.finfo(np.float32).eps)  # of least squares on bases that hold all of a small recording

@@ -25,7 +25,7 @@ from mua.baking.report import UNSAID
 from mua.cli import display
 from mua.cli.display import Display
 from mua.recording import PlannedClip, TeacherWriter, record
-from mua.student import distil, source, stages
+from mua.student import distil, stages, subband_source
 from mua.student.finetune import HUE, picture_loss
 from mua.student.settings import STAGES, Budget, preset
 from mua.wavelets import Bands
@@ -225,8 +225,8 @@ def test_a_gpu_holds_what_fits_into_half_of_what_is_free(monkeypatch: pytest.Mon
     monkeypatch.setattr(torch.cuda, "mem_get_info", lambda _: (6_000, 10_000))
     monkeypatch.setattr(torch.cuda, "memory_reserved", lambda _: 3_000)
     monkeypatch.setattr(torch.cuda, "memory_allocated", lambda _: 1_000)
-    assert source.room(torch.device("cuda")) == 4_000
-    assert source.room(torch.device("cpu")) == source.HELD_BYTES
+    assert subband_source.room(torch.device("cuda")) == 4_000
+    assert subband_source.room(torch.device("cpu")) == subband_source.HELD_BYTES
 
 
 def test_a_check_reports_on_the_recording_and_trains_nothing(

@@ -22,7 +22,7 @@ from mua.pose.clip import RANGE_OF_MOTION, REST
 from mua.pose.descriptor import describe
 from mua.pose.skeleton import Pose
 from mua.recording import Recording, TeacherWriter
-from mua.rig.moving import moving_joints
+from mua.rig.skinning import moving_joints
 from mua.student import distil as student_of
 from mua.student.distil import distil, prepare
 from mua.student.model import Student

@@ -27,6 +27,7 @@ QUICK = replace(
     sweeps=2,
     regression=Schedule(steps=200, batch=64, lr=3e-3),
     finetune=Schedule(steps=40, batch=16, lr=5e-4),
+    pictures=2,
 )
 COLOUR = slice(11, 14)  # the constant term of the spherical harmonics
 

@@ -5,11 +5,12 @@ from pathlib import Path
 
 import pytest
 import torch
-from synthetic_student import SETTINGS, Killed, bands_of_frames, kill_at, same, samples, train_in
+from synthetic_student import SETTINGS, Killed, bands_of_frames, kill_at, quick, same, samples, train_in
 
 from mua.errors import InputError
 from mua.student.settings import PRESETS, with_recipe
 from mua.training.schedule import Schedule
+from mua.wavelets import Bands
 
 RANDOM = replace(
     SETTINGS,
@@ -33,6 +34,18 @@ def test_means_are_those_of_the_training_frames(tmp_path: Path) -> None:
     student = train_in(tmp_path, replace(RANDOM, **steps))  # type: ignore[arg-type]
     mean = student.mean_lowpass() + student.static
     assert torch.allclose(mean, samples().mean_texture.T, atol=1e-5)
+
+
+def test_a_channel_that_does_not_vary_gets_no_blendshape(tmp_path: Path) -> None:
+    _, bands = bands_of_frames()
+    opacity = 10
+    for band in (bands.ll[:, opacity], bands.d3[:, :, opacity], bands.d2[:, :, opacity]):
+        band.fill_(2)
+    data = replace(samples(), subbands=lambda part, rows: Bands(*(b[rows] for b in bands.of(part))))
+    geometry = train_in(tmp_path, quick(RANDOM), data=data).geometry
+    for factor in (geometry.ll_basis, *(part.transpose(0, 1) for part in (geometry.d3.h, geometry.d2.w))):
+        assert not factor[opacity].any()
+        assert factor[0].any()
 
 
 @pytest.mark.parametrize(("stage", "step"), [("coarse mesh", 21), ("geometry descent", 5), ("appearance descent", 45)])

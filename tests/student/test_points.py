@@ -10,7 +10,7 @@ from limbs import limb_steps, limbs_apart, two_limbs
 
 from mua.student.components import Components
 from mua.student.conditioned import Conditioned
-from mua.student.points import BLEND, FARTHEST, RADII, draw_close, draw_points, exchange, scatter
+from mua.student.points import BLEND, CLOSE, FARTHEST, RADII, draw_close, draw_points, exchange, scatter
 from mua.student.regress import MESH, POSED, SWUNG, regress
 from mua.student.settings import Generalisation
 from mua.training.checkpoint import Checkpoints
@@ -115,11 +115,13 @@ def test_what_the_pose_alone_shows_is_followed_beyond_the_users_frames(tmp_path:
 
 
 def test_close_points_are_those_of_a_frame_but_for_little_noise() -> None:
-    frames = torch.randn(50, 6, generator=seeded(2))
+    frames = torch.randn(50, 6, generator=seeded(2)) * torch.tensor([1.0, 1, 1, 1, 1, 9])
     close = draw_close(frames, 400, generator=seeded(1))
     distance, nearest = torch.cdist(close, frames).min(1)
     assert 0 < distance.mean() < 0.1 * frames.std(0).norm()
     assert len(nearest.unique()) == len(frames)
+    noise = (close - frames[nearest]).std(0)
+    torch.testing.assert_close(noise, CLOSE * frames.std(0), rtol=0.2, atol=0)
 
 
 def test_a_final_fit_follows_the_users_frames_more_closely(tmp_path: Path) -> None:
@@ -130,6 +132,34 @@ def test_a_final_fit_follows_the_users_frames_more_closely(tmp_path: Path) -> No
         mlp = fitted(tmp_path / name, inputs, goal, own=own, fit=fit)
         errors[name] = (mlp(inputs) - shown)[own].norm(dim=1).median()
     assert errors["final"] < 0.8 * errors["start"]
+
+
+def test_a_third_of_the_points_of_a_final_fit_is_close_to_the_users_frames(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """No other point says anything here."""
+    inputs, shown = two_limbs(200, seed=3, together=True)
+    own = inputs[:, 0] > inputs[:, 0].median()
+    drawn = []
+
+    def nowhere(inputs: torch.Tensor, components: Components, count: int, **_: Any) -> torch.Tensor:
+        drawn.append(count)
+        return torch.zeros(count, len(components), dtype=torch.float16)
+
+    monkeypatch.setattr("mua.student.regress.draw_points", nowhere)
+    away = (fitted(tmp_path, inputs, shown, own=own, fit=MESH)(inputs) - shown).norm(dim=1)
+    assert drawn[0] == pytest.approx(2 / 3 * 600 * 64 / MESH.visits, abs=1)
+    assert away[own].median() < 0.2 * shown[own].norm(dim=1).median()
+    assert away[own].median() < 0.5 * away[~own].median()
+
+
+def test_weights_of_a_regression_decay(tmp_path: Path) -> None:
+    inputs, shown = two_limbs(200, seed=3, together=True)
+    lengths = []
+    for decay in (0.0, 10.0):
+        mlp = fitted(tmp_path / str(decay), inputs, shown, generalisation=Generalisation(weight_decay=decay))
+        lengths.append(torch.nn.utils.parameters_to_vector(mlp.parameters()).norm())
+    assert lengths[1] < 0.5 * lengths[0]
 
 
 def test_an_mlp_fitted_to_exchanged_parts_carries_over_to_limbs_that_move_apart(tmp_path: Path) -> None:

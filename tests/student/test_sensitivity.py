@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 import torch
-from compared import SETTINGS
+from compared_systems import SETTINGS
 from synthetic_student import quick, same
 
 from mua.arrays import Array

@@ -25,20 +25,21 @@ from synthetic_student import (
 )
 from trainings import one_by_one
 
-from mua.channels import APPEARANCE, GEOMETRY
+from mua.channels import APPEARANCE, COARSE_TEXELS, GEOMETRY
 from mua.pose.components import INPUT_FLOOR, principal_components
 from mua.pose.encoding import Components
 from mua.rig.bones import figure_scale
 from mua.student import coarse, targets
-from mua.student import source as sources
+from mua.student import subband_source as sources
 from mua.student.bases import BestCoefficients
 from mua.student.conditioned import Conditioned, fold
 from mua.student.factorize import truncated_svd
-from mua.student.model import Branch, build_mlp
+from mua.student.model import Branch, build_mlp, linear_layers
 from mua.student.regress import leading, whitening
-from mua.student.settings import Settings
-from mua.student.source import hold
-from mua.student.targets import joint_targets
+from mua.student.settings import Generalisation, Settings
+from mua.student.stages import Samples
+from mua.student.subband_source import hold
+from mua.student.targets import joint_targets, least_spread
 from mua.training.optimise import Progress
 from mua.training.schedule import Schedule
 from mua.wavelets import Bands
@@ -214,21 +215,36 @@ def test_a_channel_that_only_rounds_stays_at_its_mean(tmp_path: Path) -> None:
     assert not student.geometry.d2.h[:, opacity].any()
 
 
+def figure_of(size: float, bands: Bands) -> Samples:
+    """Samples of a figure that is so many times as large as a person."""
+    given = samples()
+    scale = size / figure_scale(given.meshes(torch.arange(1))[0].numpy())
+    return replace(
+        given,
+        subbands=lambda part, rows: Bands(*(b[rows] for b in bands.of(part))),
+        meshes=lambda rows: scale * given.meshes(rows),
+    )
+
+
 @pytest.mark.parametrize(("size", "still"), [(1.0, False), (100.0, True)])
 def test_what_is_seen_of_an_offset_depends_on_the_size_of_the_figure(tmp_path: Path, size: float, still: bool) -> None:
     """Hundredths of a millimetre on a person, and on a figure that is a hundred times as large."""
     _, bands = bands_of_frames()
     for band in (bands.ll[:, 0], bands.d3[:, :, 0], bands.d2[:, :, 0]):
         band.mul_(1e-2)
-    given = samples()
-    scale = size / figure_scale(given.meshes(torch.arange(1))[0].numpy())
-    data = replace(
-        given,
-        subbands=lambda part, rows: Bands(*(b[rows] for b in bands.of(part))),
-        meshes=lambda rows: scale * given.meshes(rows),
-    )
-    student = train_in(tmp_path, quick(), data=data)
+    student = train_in(tmp_path, quick(), data=figure_of(size, bands))
     assert student.geometry.d2.h[:, 0].any() != still
+
+
+@pytest.mark.parametrize(("channel", "size"), [(10, 1.0), (0, 100.0)])  # an opacity, an offset of a large figure
+def test_a_channel_that_hardly_varies_stays_at_its_mean(tmp_path: Path, channel: int, size: float) -> None:
+    """One sample of its LL changes visibly; over all texels and frames that is next to nothing."""
+    _, bands = bands_of_frames()
+    for band in (bands.ll[:, channel], bands.d3[:, :, channel], bands.d2[:, :, channel]):
+        band.zero_()
+    least = least_spread(GEOMETRY, size=size)[channel]
+    bands.ll[:, channel, 1, 1] = 2 * COARSE_TEXELS * least * torch.linspace(-1, 1, FRAMES)
+    assert train_in(tmp_path, quick(), data=figure_of(size, bands)).geometry.ll_basis[channel].abs().max() < 0.1 * least
 
 
 def test_whitened_directions_vary_alike_down_to_the_floor() -> None:
@@ -307,3 +323,19 @@ def test_fewer_frames_than_blendshapes_train(tmp_path: Path) -> None:
     student = train_in(tmp_path, quick(), data=samples(2))
     assert all(torch.isfinite(tensor).all() for tensor in student.state_dict().values())
     assert isinstance(student.geometry, Branch)
+
+
+def test_fine_tuning_lets_weights_decay_and_bases_not(tmp_path: Path) -> None:
+    """One step whose rate is all but nothing, so that the decay alone changes a student."""
+    lr, shrink = 1e-7, 0.25
+    step = Schedule(steps=1, batch=1, lr=lr, cosine=False)
+    settings = replace(SETTINGS, regression=replace(step, lr=1e-12), finetune=step)
+    kept, decayed = (
+        train_in(tmp_path / str(decay), replace(settings, generalisation=Generalisation(weight_decay=decay)))
+        for decay in (0.0, shrink / lr)
+    )
+    for before, after in ((kept.geometry, decayed.geometry), (kept.appearance, decayed.appearance)):
+        hidden = [linear_layers(branch.mlp)[1].weight for branch in (before, after)]
+        assert torch.allclose(hidden[1], (1 - shrink) * hidden[0], atol=1e-4)
+        assert torch.allclose(after.ll_basis, before.ll_basis, atol=1e-4)
+        assert torch.allclose(after.d2.h, before.d2.h, atol=1e-4)

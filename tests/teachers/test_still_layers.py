@@ -7,7 +7,7 @@ import pytest
 from patches import patch, plain, surfaces_of, uv_map
 
 from mua.arrays import Array
-from mua.atlas.surfaces import Surfaces
+from mua.atlas.character_surfaces import Surfaces
 from mua.atlas.uv import build_atlas
 from mua.avatar.camera import orbit
 from mua.avatar.decode import pose_splats

@@ -14,7 +14,7 @@ from small_teachers import FEW, SETTINGS, material, motion, teacher
 
 from mua import rotation
 from mua.arrays import Array
-from mua.baking.filmed_motion import filmed_clips
+from mua.baking.capture_motion import filmed_clips
 from mua.capture import Capture, CaptureClip
 from mua.errors import InputError
 from mua.motion.poses_file import write_poses
@@ -30,7 +30,7 @@ from mua.teachers.trained.from_capture import (
 from mua.teachers.trained.image_losses import ImageLoss
 from mua.teachers.trained.preview import Preview, picture_of, psnr
 from mua.teachers.trained.track_losses import TexelTracks
-from mua.teachers.trained.tracked import tracks_of
+from mua.teachers.trained.tracked_points import tracks_of
 
 CPU = torch.device("cpu")
 ROWS = 32

@@ -15,8 +15,8 @@ from mua.teachers.trained.graph_networks import PartFeatures, skin_of_parts
 from mua.teachers.trained.motion_deformation import MotionDeformation
 from mua.teachers.trained.smooth_deformation import FITTED, NOISE, SmoothDeformation
 from mua.teachers.trained.template_training import template_of
+from mua.training.kernel_regression import WIDTH
 from mua.training.schedule import Schedule
-from mua.training.smoother import WIDTH
 
 FRAMES = 12
 BOUND = 1e-4  # metres: float32 through a decomposition and a solve, on displacements of up to a metre

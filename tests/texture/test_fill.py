@@ -7,7 +7,7 @@ import torch
 from mua import wavelets
 from mua.errors import InputError
 from mua.rig.texel_map import TexelMap
-from mua.texture.fill import Fill
+from mua.texture.fill import Fill, fill_of
 
 PYRAMID_LEVELS = 10  # enough for a texture of up to 1,024 texels
 ROUNDING = 16 * PYRAMID_LEVELS * float(torch.finfo(torch.float32).eps)  # about 16 operations per level on unit values
@@ -47,6 +47,24 @@ def test_constant_stays_constant_and_valid_texels_are_untouched(size: int) -> No
 def test_without_empty_texels_nothing_changes() -> None:
     values = torch.from_numpy(np.random.default_rng(0).standard_normal((36, 2)))
     assert torch.equal(Fill(texel_map(np.ones((6, 6), bool)))(values), values.T.reshape(2, 6, 6))
+
+
+def test_a_texture_has_no_border() -> None:
+    """Wavelets are periodic, so that a step from one border to the other would be detail too."""
+    size, random = 32, np.random.default_rng(1)
+    valid, image = random.random((size, size)) < 0.2, random.random((size, size))
+    filled = Fill(texel_map(valid))(at(image, valid))
+    for axis in (0, 1):
+        moved, shown = (np.roll(values, size // 2, axis) for values in (valid, image))
+        found = Fill(texel_map(moved))(at(shown, moved))
+        torch.testing.assert_close(found, filled.roll(size // 2, axis + 1), rtol=0, atol=ROUNDING)
+
+
+def test_each_map_is_filled_as_its_own_texels_lie() -> None:
+    for size in (8, 16):
+        valid = discs(size)
+        filled = fill_of(texel_map(valid))(at(valid.astype(float), valid))
+        torch.testing.assert_close(filled, torch.ones(1, size, size), rtol=0, atol=ROUNDING)
 
 
 def test_one_valid_texel_fills_everything() -> None:

@@ -149,3 +149,36 @@ def test_frames_do_not_turn_at_rest() -> None:
     q, strain = surfels.SurfaceFrames(mesh.vertices, mesh.faces)(mesh.vertices)
     np.testing.assert_allclose(q, np.tile([1.0, 0, 0, 0], (len(q), 1)), atol=ROUNDING)
     np.testing.assert_allclose(strain, 0, atol=ROUNDING)
+
+
+def test_a_surface_without_extent_gets_surfels_of_the_least_size() -> None:
+    """The lower half of the tube is one point."""
+    mesh = tube().mesh
+    low = mesh.vertices[:, 1] < np.median(mesh.vertices[:, 1])
+    mesh = replace(mesh, vertices=np.where(low[:, None], [0.0, mesh.vertices[:, 1].min(), 0], mesh.vertices))
+    texels = build_texel_map(mesh, SIZE)
+    found = surfels.rest_surfels(
+        mesh, size=SIZE, texels=texels.texels, triangles=texels.triangles, barycentrics=texels.barycentrics
+    )
+    least = surfels.LEAST * np.ptp(mesh.vertices, axis=0).max()
+    assert found.log_scales.min() == pytest.approx(np.log(least), abs=ROUNDING)
+    np.testing.assert_allclose(np.linalg.norm(found.rotations, axis=1), 1, atol=ROUNDING)
+
+
+def test_normals_of_a_sheet_with_two_sides_point_up() -> None:
+    sheet = np.array([[0.0, 0, 0], [1, 0, 0], [0, 0, 1]]), np.array([[0, 1, 2], [0, 2, 1]])
+    np.testing.assert_array_equal(surfels.vertex_normals(*sheet), np.tile([0.0, 1, 0], (3, 1)))
+
+
+@pytest.mark.parametrize(
+    "corner", [(0.5, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 1e-9)], ids=["on a line", "twice", "all but twice"]
+)
+def test_a_triangle_without_area_follows_as_well_as_it_can(corner: tuple[float, float, float]) -> None:
+    """Such triangles are in many files; their neighbours must not suffer."""
+    rest = np.array([[0.0, 0, 0], [1, 0, 0], corner, [0, 0, -1]])
+    follow = surfels.SurfaceFrames(rest, np.array([[0, 1, 2], [0, 3, 1]]))
+    rotations, strains = follow(rest)
+    np.testing.assert_allclose(np.abs(rotations[:, 0]), 1, atol=ROUNDING)
+    np.testing.assert_allclose(strains, 0, atol=ROUNDING)
+    assert (follow.squeeze(np.zeros_like(rest)) > 1).all()  # squeezed to a point, by a number that is finite
+    assert np.isfinite(follow.squeeze(np.zeros_like(rest))).all()

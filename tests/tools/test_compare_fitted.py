@@ -6,6 +6,8 @@ import pytest
 from compare_fitted import main
 from shared_data import SharedData
 
+pytestmark = pytest.mark.usefixtures("first_try")
+
 
 def test_fitted_splats_come_nearer_than_laid_ones(shared_data: SharedData, capsys: pytest.CaptureFixture[str]) -> None:
     main([str(shared_data.path("characters/lumberjack.glb")), "--texels", "64", "--steps", "12"])

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 import torch
 import train_ranks
-from compared import SETTINGS, smooth_recording
+from compared_systems import SETTINGS, smooth_recording
 
 from mua.student.settings import Ranks, Sizes, preset
 from mua.training.schedule import Schedule

@@ -10,7 +10,7 @@ from synthetic_student import bands_of_frames
 from together import errors, start, trained
 
 from mua.channels import GEOMETRY
-from mua.student.source import hold
+from mua.student.subband_source import hold
 from mua.training.processes import ALONE, Processes, another_ended
 from mua.wavelets import Bands
 

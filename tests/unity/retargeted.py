@@ -9,9 +9,9 @@ from mua.arrays import Array
 from mua.motion.contacts import floor_of, standing
 from mua.motion.floor import foot_heights, hips_of, hips_path, led, leg_scale
 from mua.motion.match import match_joints
-from mua.motion.rest import Rest, Y, rest_of
+from mua.motion.rest_alignment import Rest, Y, rest_of
 from mua.motion.retarget import calibrations_at_rest, retarget
-from mua.motion.source import SourceMotion
+from mua.motion.source_motion import SourceMotion
 from mua.pose.skeleton import Skeleton
 
 SECONDS = 10  # that heights of feet are remembered

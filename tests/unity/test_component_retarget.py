@@ -11,7 +11,7 @@ from retargeted import expected
 from synthetic_avatar import synthetic_avatar
 
 from mua.asset import read, write
-from mua.motion.source import SourceMotion
+from mua.motion.source_motion import SourceMotion
 from mua.pose.joint_names import roles
 
 OURS, THEIRS = person(arms_down=45, size=0.8, axes=2), person(size=1.2, axes=5)

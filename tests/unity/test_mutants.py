@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from csharp import CSharp
 from format_program import program, values  # noqa: F401 program is a fixture
-from mutants import expression_mutant, mutant, packed_mutant
+from mutated_files import expression_mutant, mutant, packed_mutant
 from oracle import expressions, file
 from oracle.motion import Pose
 from readers import SECONDS, Reader, within

@@ -16,7 +16,7 @@ from mua import rotation
 from mua.arrays import Array
 from mua.characters.read import read_animation, read_surfaces
 from mua.motion.read import read_motion
-from mua.motion.source import SourceMotion
+from mua.motion.source_motion import SourceMotion
 from mua.pose.clip import Clip
 from mua.pose.joint_names import roles
 from mua.pose.skeleton import Skeleton

@@ -18,9 +18,9 @@ from mua.asset.write import encode
 from mua.avatar.camera import EYE_DISTANCE, Camera, stereo
 from mua.gpu import Device
 from mua.player.buffers import AvatarBuffers
+from mua.player.cpu_image import over
 from mua.player.levels import FULL, Levels
 from mua.player.offscreen import Offscreen
-from mua.player.picture import over
 from mua.player.toggles import Toggles
 from mua.player.viewpoint import Viewpoint
 from mua.pose.resample import resample

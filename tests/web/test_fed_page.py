@@ -9,10 +9,10 @@ from people import person
 from vmc_senders import bundle
 from web.browser import Browser
 
-from mua.live.live import EASING, Live
+from mua.live.live_pose import EASING, Live
 from mua.live.receiver import Address, Receiver
 from mua.pose.encoding import PoseEncoding
-from mua.share.live import PATH, Feed, live_site
+from mua.share.live_feed import PATH, Feed, live_site
 from mua.share.server import address, serving
 from mua.share.site import Shown, player_site
 

@@ -16,10 +16,10 @@ from mua.asset.read import read
 from mua.avatar.camera import Camera
 from mua.gpu import Device
 from mua.player.buffers import AvatarBuffers
+from mua.player.cpu_image import over
 from mua.player.levels import Levels
 from mua.player.offscreen import Offscreen
 from mua.player.overlays import ground_height
-from mua.player.picture import over
 from mua.pose.resample import resample
 
 __all__ = ["opened", "small"]  # fixtures

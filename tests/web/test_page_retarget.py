@@ -23,7 +23,7 @@ from mua.motion.load import load_motions
 from mua.motion.match import match_joints
 from mua.motion.read import read_motion
 from mua.motion.retarget import retarget
-from mua.motion.source import SourceMotion
+from mua.motion.source_motion import SourceMotion
 from mua.pose.clip import Clip
 from mua.pose.joint_names import roles
 from mua.pose.signed_expressions import UNIT

@@ -36,7 +36,8 @@ def distances(character: Character, clip: Clip) -> Iterator[Array]:
 
 def measure(path: Path, motion: Sequence[Path]) -> None:
     """Print a line for each body part of a character."""
-    character = load_character(path, uv="auto", seed=0, detail=read_detail((), uv="auto"))
+    # The atlas does not matter here.
+    character = load_character(path, uv="keep", seed=0, detail=read_detail((), uv="keep"))
     faces, scale = character.mesh.faces, figure_scale(character.mesh.vertices)
     part = body_parts(character.skeleton, faces, character.skin_indices, character.skin_weights, stated=character.roles)
     sag = np.max([one for moved in motions_of(character, motion) for one in distances(character, moved.clip)], axis=0)

@@ -19,7 +19,7 @@ from mua.teachers.trained.drivable_template import Undeformed
 from mua.teachers.trained.folder import load_teacher
 from mua.teachers.trained.from_capture import Filmed, read_filmed
 from mua.teachers.trained.model import TeacherModel
-from mua.teachers.trained.tracked import tracks_of_clip
+from mua.teachers.trained.tracked_points import tracks_of_clip
 
 
 @torch.no_grad()

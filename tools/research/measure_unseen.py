@@ -29,8 +29,8 @@ from mua.asset.avatar import Avatar
 from mua.asset.read import read
 from mua.avatar.decode import Splats, decode_clip_frame, pose_splats
 from mua.avatar.rendering import render_premultiplied, to_bytes
-from mua.baking.evaluate import MESH, UNITS, Errors, Picture
 from mua.baking.portrait import portrait
+from mua.baking.student_errors import MESH, UNITS, Errors, Picture
 from mua.channels import ATTRIBUTES, SH_C0
 from mua.fidelity.background import background_for, over
 from mua.fidelity.strips import caption, sheet

@@ -19,7 +19,7 @@ import numpy as np  # noqa: E402
 from vmc_senders import Sender, humanoid, performing  # noqa: E402
 
 from mua.asset.read import read  # noqa: E402
-from mua.live.live import Live  # noqa: E402
+from mua.live.live_pose import Live  # noqa: E402
 from mua.live.receiver import LOOPBACK, Address, Receiver  # noqa: E402
 from mua.motion.read import read_motion  # noqa: E402
 

@@ -32,11 +32,11 @@ from mua.splatting.rasterise import rasterise
 from mua.student.bases import BestCoefficients
 from mua.student.distil import describe_frames, prepare
 from mua.student.model import Student
-from mua.student.outline import Body, outline
 from mua.student.sensitivity import measure_sensitivities
 from mua.student.settings import LEAN_SIZES, PAPER_SIZES, PRESETS, Ranks, Settings, Sizes, StageName, preset
-from mua.student.source import hold
+from mua.student.shapes import Body, outline
 from mua.student.stages import BRANCHES, fit_branch, mean_lowpass
+from mua.student.subband_source import hold
 from mua.training.checkpoint import Checkpoints, run_key
 from mua.training.optimise import Progress, Run
 from mua.wavelets import Bands

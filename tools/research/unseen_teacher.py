@@ -16,7 +16,7 @@ from mua import rotation
 from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.atlas.detail import read_detail
-from mua.baking.recorded import motion_bytes
+from mua.baking.resumed_recording import motion_bytes
 from mua.baking.sources import load_character
 from mua.errors import InputError
 from mua.files.write import replacing

@@ -6,7 +6,7 @@ namespace Mua
 {
     /// <summary>
     /// A tensor of the file as the kernels read it: words of packed elements, and how to unpack them
-    /// (python/mua/gpu/stored.py).
+    /// (python/mua/gpu/tensor_words.py).
     /// </summary>
     internal sealed class StoredBuffer
     {

@@ -11,9 +11,9 @@ import numpy as np
 from scipy.sparse import coo_matrix
 
 from mua.arrays import Array
+from mua.atlas.character_surfaces import Surfaces
 from mua.atlas.detail import by_default
 from mua.atlas.surface_samples import spread_samples, texture_losses
-from mua.atlas.surfaces import Surfaces
 from mua.atlas.visibility import seen_shares
 from mua.rig.body_parts import BODY_PARTS
 from mua.rig.charts import areas

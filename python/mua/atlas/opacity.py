@@ -7,8 +7,8 @@ from PIL import Image
 from scipy.ndimage import maximum_filter
 
 from mua.arrays import Array
+from mua.atlas.character_surfaces import Surfaces
 from mua.atlas.filtering import bled
-from mua.atlas.surfaces import Surfaces
 from mua.errors import InputError
 from mua.scene import Material, wrapped
 

@@ -6,7 +6,7 @@ import numpy as np
 from PIL import Image
 
 from mua.arrays import Array
-from mua.atlas.surfaces import Surfaces
+from mua.atlas.character_surfaces import Surfaces
 from mua.rig.charts import areas
 from mua.scene import Material, wrapped
 

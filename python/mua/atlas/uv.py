@@ -8,12 +8,12 @@ import xatlas
 from mua.arrays import Array, unique_rows
 from mua.atlas.allocation import wanted_fineness
 from mua.atlas.bake_texture import bake_texture
+from mua.atlas.character_surfaces import Surfaces
+from mua.atlas.chart_packing import pack
 from mua.atlas.chart_quality import distorted, even, overlapping, starved
 from mua.atlas.detail import Detail, UvMode, factors, split_by_factor
 from mua.atlas.opacity import without_unseen
-from mua.atlas.packing import pack
 from mua.atlas.redraw import redrawn
-from mua.atlas.surfaces import Surfaces
 from mua.rig.body_parts import body_parts
 from mua.rig.character import Character, Mesh
 from mua.rig.charts import areas, find_charts

@@ -19,7 +19,7 @@ from mua.rig.rig import Rig
 from mua.rig.triangulate import triangulate
 from mua.student.export import export_branches, export_coarse, export_components
 from mua.student.model import Student
-from mua.student.outline import wavelet_of
+from mua.student.shapes import wavelet_of
 from mua.version import __version__
 
 THUMBNAIL = 256  # pixels

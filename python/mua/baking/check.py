@@ -27,7 +27,7 @@ from mua.motion.load import LoadedMotion, counted, load_motions
 from mua.motion.mapping import write_mapping
 from mua.motion.match import JointPair, joint_pairs, match_joints, require_limbs, unmatched_target
 from mua.motion.quality import MotionQuality, measure_motion
-from mua.motion.source import SourceMotion
+from mua.motion.source_motion import SourceMotion
 from mua.pose.clip import Clip
 from mua.pose.encoding import RATE
 from mua.rig.character import Character

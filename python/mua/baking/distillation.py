@@ -17,11 +17,11 @@ from mua.asset.write import write
 from mua.baking import playback, report
 from mua.baking.assemble import assemble
 from mua.baking.contact_sheet import contact_sheet
-from mua.baking.evaluate import Errors, evaluate
 from mua.baking.listener import Listener
 from mua.baking.one_sided import with_one_sided
 from mua.baking.settings import ALL
 from mua.baking.shared_options import DeviceName
+from mua.baking.student_errors import Errors, evaluate
 from mua.errors import InputError
 from mua.files.write import remove_leftovers, replacing, require_writable, write_bytes
 from mua.pose.clip import Clip

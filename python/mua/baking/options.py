@@ -73,7 +73,7 @@ def _check_motion_options(settings: BakeSettings) -> None:
 def _check_budget(settings: BakeSettings) -> None:
     """Raises InputError where no student of any body is so small, before anything is recorded."""
     from mua.student.budget import within_budget  # which reads wavelets: a missing extra is named first
-    from mua.student.outline import Body
+    from mua.student.shapes import Body
 
     within_budget(settings.student, Body(), settings.storage)
 

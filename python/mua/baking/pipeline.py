@@ -11,18 +11,18 @@ from threadpoolctl import threadpool_limits
 
 from mua.arrays import Array
 from mua.atlas.texel_density import describe_texels
+from mua.baking.capture_bake import bake_trained_teacher
 from mua.baking.check import fidelity_of
 from mua.baking.contact_sheet import CELL
 from mua.baking.distillation import Baked, Distillation, choose_device, distil_student, finish
-from mua.baking.filmed import bake_trained_teacher
 from mua.baking.forked import can_fork, in_fork
 from mua.baking.listener import Listener
 from mua.baking.options import check_output
 from mua.baking.plan import describe_plan, plan, split, usual_poses
 from mua.baking.playback import choose
 from mua.baking.ranges import planned_range, settings_for
-from mua.baking.recorded import recorded, recording_key
 from mua.baking.report import STAND_IN
+from mua.baking.resumed_recording import recorded, recording_key
 from mua.baking.settings import BakeSettings
 from mua.baking.sources import clips_of, faced, load_baked_character
 from mua.errors import InputError

@@ -7,8 +7,7 @@ import numpy as np
 from mua.baking.plan import ENDING
 from mua.baking.settings import ALL, NONE
 from mua.errors import InputError
-from mua.pose.clip import Clip, is_range
-from mua.pose.moved import show_one_pose
+from mua.pose.clip import Clip, is_range, show_one_pose
 from mua.recording import RecordedClip
 
 LOOKED_AT = 512  # frames, evenly over all clips, of which the most typical is pictured

@@ -7,8 +7,7 @@ from mua.baking.plan import plan
 from mua.baking.settings import BakeSettings
 from mua.characters.rigid_skeleton import rest_pose
 from mua.motion.range import motion_range
-from mua.pose.clip import RANGE_OF_MOTION, REST, Clip
-from mua.pose.moved import moved_by
+from mua.pose.clip import RANGE_OF_MOTION, REST, Clip, moved_by
 from mua.recording import PlannedClip
 from mua.rig.character import Character
 from mua.student.settings import Settings

@@ -9,7 +9,7 @@ from pathlib import Path
 from rich.markup import escape
 from rich.table import Table
 
-from mua.baking.evaluate import MESH, PICTURES, TRAINING, UNITS, Errors, held_out_errors
+from mua.baking.student_errors import MESH, PICTURES, TRAINING, UNITS, Errors, held_out_errors
 from mua.channels import ATTRIBUTES
 
 STAND_IN = "the teacher is a simulated stand-in, not a capture"

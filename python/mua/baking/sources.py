@@ -8,8 +8,8 @@ from typing import Unpack
 import numpy as np
 
 from mua.asset.storable import require_names
+from mua.atlas.character_surfaces import Surfaces
 from mua.atlas.detail import Detail, UvMode
-from mua.atlas.surfaces import Surfaces
 from mua.baking.settings import BakeSettings
 from mua.characters.facing import AS_SHOWN
 from mua.characters.figure_size import AS_FOUND, FigureSize
@@ -21,9 +21,8 @@ from mua.motion.load import counted, load_motions, unique_names
 from mua.motion.planted_feet import Feet
 from mua.motion.quality import measure_motion
 from mua.motion.range import motion_range, standing
-from mua.pose.clip import RANGE_OF_MOTION, Clip
+from mua.pose.clip import RANGE_OF_MOTION, Clip, show_one_pose
 from mua.pose.encoding import RATE
-from mua.pose.moved import show_one_pose
 from mua.pose.resample import resample
 from mua.rig.character import Character
 

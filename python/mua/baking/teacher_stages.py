@@ -11,9 +11,9 @@ from mua.baking.listener import Listener
 from mua.capture import open_capture
 from mua.capture.inventory import missing_files
 from mua.teachers.trained.folder import Description, save_teacher
+from mua.teachers.trained.frame_surfaces import measured_surfaces
 from mua.teachers.trained.from_capture import Filmed, Outlines, material_of, preview_of, read_filmed, refinement_of
 from mua.teachers.trained.image_losses import ImageLoss, Material, Perceptual
-from mua.teachers.trained.measured import measured_surfaces
 from mua.teachers.trained.model import TeacherModel
 from mua.teachers.trained.motion_deformation import REGRESSION
 from mua.teachers.trained.preview import Preview
@@ -21,7 +21,7 @@ from mua.teachers.trained.settings import TeacherSettings
 from mua.teachers.trained.splat_training import STAGES, TEXTURE, train_teacher
 from mua.teachers.trained.template_training import STAGES as TEMPLATE_STAGES
 from mua.teachers.trained.template_training import Observations, TemplateSettings, fit_template
-from mua.teachers.trained.tracked import Tracked, tracks_of
+from mua.teachers.trained.tracked_points import Tracked, tracks_of
 from mua.training.checkpoint import Checkpoints, run_key
 from mua.training.optimise import Progress, Run
 from mua.training.processes import Processes

@@ -13,7 +13,7 @@ from mua.avatar.frame_budget import FrameBudget, measure
 from mua.avatar.level_choice import LARGEST_TEXEL, Seen, choose_levels
 from mua.bench.counts import Counts, LevelCounts, halves
 from mua.bench.devices import ModelDevice
-from mua.bench.model import drawing_ms, parts_ms, pose_ms
+from mua.bench.frame_model import drawing_ms, parts_ms, pose_ms
 
 SCENES = ((2.2, 2.2, 2.2), (1.0, 1.6, 2.2, 3.0, 4.0, 5.0, 6.5, 8.0, 10.0, 13.0))  # metres of each avatar
 DISPLAYED, RATE = 72, 25  # displayed frames, and poses of an avatar, a second

@@ -26,8 +26,8 @@ from mua.rig.expressions import Expressions
 from mua.rig.rig import Rig
 from mua.rig.texel_map import build_texel_map
 from mua.rig.triangulate import triangulate
-from mua.student.outline import wavelet_of
 from mua.student.settings import Ranks, Settings
+from mua.student.shapes import wavelet_of
 
 HEIGHT, RADIUS = 1.7, 0.18  # metres
 HOLE = 0.02  # share of the radius left at both ends, so that no triangle has zero area

@@ -6,7 +6,7 @@ import numpy as np
 
 from mua.capture.camera_fit import OF_ALL, Fit, drawn, in_lens, in_place, in_time
 from mua.capture.fit import Posed, Seen, by_camera, mean_overlap
-from mua.capture.outline import overlap
+from mua.capture.silhouette import overlap
 
 POOR = 0.6  # overlap below which outline and mask do not show the same thing
 OUTLIER = 0.75  # share of the median overlap below which a view or camera stands apart from others

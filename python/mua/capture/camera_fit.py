@@ -10,7 +10,7 @@ from mua.arrays import Array
 from mua.capture.camera import CaptureCamera
 from mua.capture.fit import Posed, Seen, mean_overlap
 from mua.capture.lens import distorted
-from mua.capture.outline import FINER, fine_silhouette, overlap
+from mua.capture.silhouette import FINER, fine_silhouette, overlap
 
 TRIED = 6  # views of a camera that other places are tried on
 OF_ALL = 2  # views of each camera that other lenses are tried on

@@ -7,7 +7,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TypeVar
 
-from mua.atlas.surfaces import Surfaces
+from mua.atlas.character_surfaces import Surfaces
 from mua.atlas.uv import build_atlas
 from mua.capture.camera import CaptureCamera
 from mua.capture.poses import cut_poses, every, template_poses

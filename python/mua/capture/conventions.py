@@ -9,7 +9,7 @@ import numpy as np
 from mua.arrays import Array
 from mua.capture.camera import CaptureCamera
 from mua.capture.fit import Posed, Seen, mean_overlap
-from mua.capture.outline import overlap, rough_overlap
+from mua.capture.silhouette import overlap, rough_overlap
 from mua.errors import InputError
 
 TRIED = 8  # views that every convention is tried on

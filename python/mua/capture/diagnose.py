@@ -9,7 +9,7 @@ from mua.capture.apart import GAIN, POOR, cameras_apart, cameras_below, missing_
 from mua.capture.capture import Capture
 from mua.capture.conventions import better_convention
 from mua.capture.fit import Posed, Seen, by_camera, mean_overlap
-from mua.capture.outline import POINTS, overlap, posed_template, rough_overlap, silhouette
+from mua.capture.silhouette import POINTS, overlap, posed_template, rough_overlap, silhouette
 from mua.capture.tracks import PointTracks, read_tracks
 from mua.errors import InputError
 

@@ -7,10 +7,10 @@ from itertools import groupby
 import numpy as np
 
 from mua.arrays import Array
-from mua.atlas.surfaces import Surfaces
+from mua.atlas.character_surfaces import Surfaces
 from mua.capture.camera import CaptureCamera
 from mua.capture.capture import Capture, CaptureClip
-from mua.capture.outline import COVERED, overlap, posed_template, silhouette
+from mua.capture.silhouette import COVERED, overlap, posed_template, silhouette
 from mua.capture.view import smaller
 
 ROWS = 256  # of the images that are compared

@@ -11,7 +11,7 @@ import numpy as np
 
 from mua import rotation
 from mua.arrays import Array
-from mua.atlas.surfaces import Surfaces
+from mua.atlas.character_surfaces import Surfaces
 from mua.capture.keypoint_targets import Target, find_targets, limb_scales, well_seen
 from mua.capture.readers.keypoints import Keypoints
 from mua.pose.clip import Clip

@@ -8,7 +8,7 @@ import numpy as np
 
 from mua import rotation
 from mua.arrays import Array
-from mua.atlas.surfaces import Surfaces
+from mua.atlas.character_surfaces import Surfaces
 from mua.capture.readers.keypoints import Keypoints
 from mua.errors import InputError
 from mua.motion.facing import front_of

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from mua.atlas.surfaces import Surfaces
+from mua.atlas.character_surfaces import Surfaces
 from mua.errors import InputError
 from mua.motion.load import load_motions
 from mua.pose.clip import Clip

@@ -8,7 +8,7 @@ from mua.arrays import Array
 from mua.avatar.rendering import to_bytes
 from mua.capture.check import Checked
 from mua.capture.fit import Seen
-from mua.capture.outline import COVERED
+from mua.capture.silhouette import COVERED
 from mua.capture.view import person, smaller
 
 CELL = 420  # pixels along the longer side of an image

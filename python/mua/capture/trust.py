@@ -7,7 +7,7 @@ import numpy as np
 
 from mua.capture.capture import Capture
 from mua.capture.fit import chosen_frames
-from mua.capture.outline import COVERED, POINTS, rough_overlap
+from mua.capture.silhouette import COVERED, POINTS, rough_overlap
 from mua.capture.view import View
 from mua.errors import InputError
 from mua.rig.skinning import Skinning

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from mua.arrays import Array, unique_rows
-from mua.atlas.surfaces import Surfaces
+from mua.atlas.character_surfaces import Surfaces
 from mua.characters.alpha import NOTHING_SAID, Alphas, with_alphas
 from mua.characters.bind_pose import Bind, bind_pose
 from mua.characters.collapsed import without_collapsed
@@ -17,9 +17,9 @@ from mua.characters.expressions import fingerprints, joined_targets, unfolding, 
 from mua.characters.facing import AS_SHOWN, Facing, turn_about_y
 from mua.characters.gaze import GAZE, with_gaze
 from mua.characters.messages import UNHELD, Messages, is_about
-from mua.characters.outline import outlines
 from mua.characters.rigid_skeleton import rigid_skeleton, roles_of
 from mua.characters.smplx import with_pairs, with_smplx
+from mua.characters.toon_outline import outlines
 from mua.characters.winding import inside_out
 from mua.errors import InputError
 from mua.limits import MAX_INFLUENCES

@@ -4,8 +4,8 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TypedDict, Unpack
 
+from mua.atlas.character_surfaces import Surfaces
 from mua.atlas.detail import Detail, UvMode
-from mua.atlas.surfaces import Surfaces
 from mua.atlas.uv import build_atlas
 from mua.characters.alpha import Alphas
 from mua.characters.animation import Animation

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from mua.atlas.surfaces import Surfaces
+from mua.atlas.character_surfaces import Surfaces
 from mua.characters.correction import carried
 from mua.characters.figure_size import AS_FOUND, LEAST, MOST, FigureSize
 from mua.errors import InputError

@@ -151,9 +151,9 @@ def _model(device: "Device", path: Path, name: str, frames: int, output: Path | 
     """Print what a frame would take elsewhere, and what it takes here."""
     from mua.bench.counts import count
     from mua.bench.crowd import SCENES, crowd
+    from mua.bench.frame_model import model
     from mua.bench.instructions import fragment_instructions
     from mua.bench.measure import measure
-    from mua.bench.model import model
     from mua.cli.model_table import crowd_table, measured_line, model_json, model_legend, model_table
 
     chosen, instructions = model_device(name), fragment_instructions()

@@ -32,9 +32,9 @@ def evaluate(**options: Any) -> None:
         require_research(f"--system {settings.system[0]}")
     # after the options are checked, because these take seconds to load
     if filmed:
-        from mua.cli.filmed_evaluation import compare
+        from mua.cli.capture_evaluation import compare
     else:
-        from mua.cli.evaluation import compare
+        from mua.cli.recording_evaluation import compare
     compare(settings)
 
 

@@ -8,8 +8,8 @@ from rich.table import Table
 
 from mua.bench.crowd import Crowd
 from mua.bench.devices import ModelDevice
+from mua.bench.frame_model import Modelled, Stages
 from mua.bench.measure import Measured
-from mua.bench.model import Modelled, Stages
 from mua.bench.work import POSING
 
 COLUMNS = (

@@ -14,7 +14,7 @@ from mua.cli.view_options import Asked, check_fitting, check_inputs, kind_of, lo
 from mua.errors import InputError
 from mua.files.write import require_writable
 from mua.motion.mapping import read_mapping
-from mua.player.source import Source
+from mua.player.played_files import Source
 from mua.player.toggles import Toggles
 
 PANELS = {"Camera and look": [field.name for field in fields(Asked)]}

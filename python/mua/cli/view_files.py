@@ -19,11 +19,11 @@ from mua.avatar.camera import Camera
 from mua.cli.option_values import is_video, parse_frame, parse_frames
 from mua.cli.view_options import Kind
 from mua.files.write import replacing
+from mua.player.cpu_image import Reference, over
 from mua.player.levels import FULL, Levels
 from mua.player.motion import expressed, named_clip, player_clips, require_expressions
-from mua.player.picture import Reference, over
+from mua.player.played_files import Source
 from mua.player.shot import Look, film, full_turn
-from mua.player.source import Source
 from mua.pose.clip import Clip
 
 Painter: TypeAlias = Callable[[int, Sequence[Camera]], Array]  # a frame's premultiplied image [H, E W, 4]

@@ -16,7 +16,7 @@ from mua.live.receiver import Address
 from mua.motion.mapping import read_mapping
 from mua.player.motion import live_of
 from mua.player.toggles import parse_toggles
-from mua.share.live import PATH, Feed, live_site
+from mua.share.live_feed import PATH, Feed, live_site
 from mua.share.poster import front, opening
 from mua.share.server import address, serving
 from mua.share.site import Shown, player_site, title_of

@@ -14,7 +14,7 @@ from mua.fidelity.canvas import opened
 from mua.fidelity.faces import FaceFidelity, compare_faces
 from mua.fidelity.measure import Agreement, Pair, agreement, together, worst_place
 from mua.fidelity.painter import Painter
-from mua.fidelity.posing import Moment, Poser, dominant_joints, skinned
+from mua.fidelity.source_pose import Moment, Poser, dominant_joints, skinned
 from mua.fidelity.splats import SplatPainter
 from mua.pose.clip import Clip
 from mua.rig.character import Character

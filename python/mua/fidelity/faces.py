@@ -11,8 +11,8 @@ from mua.arrays import Array
 from mua.avatar.camera import Camera
 from mua.avatar.decode import express, pose_splats
 from mua.fidelity.measure import Pair, agreement
-from mua.fidelity.posing import Moment
 from mua.fidelity.source_faces import SCREEN, camera_of, patched, source_faces
+from mua.fidelity.source_pose import Moment
 from mua.fidelity.splats import SplatPainter
 from mua.kernels.expressions import reach_of
 from mua.scene import Source

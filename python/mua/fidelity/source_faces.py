@@ -13,7 +13,7 @@ from mua.arrays import Array
 from mua.avatar.camera import Camera, orbit
 from mua.fidelity.canvas import Area
 from mua.fidelity.painter import Painter
-from mua.fidelity.posing import Moment, skinned
+from mua.fidelity.source_pose import Moment, skinned
 from mua.scene import Part, Scene
 
 SCREEN = (288, 288)  # width, height, pixels

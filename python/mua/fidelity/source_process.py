@@ -13,11 +13,11 @@ from contextlib import suppress
 from typing import Self
 
 from mua.arrays import Array
-from mua.atlas.surfaces import Surfaces
+from mua.atlas.character_surfaces import Surfaces
 from mua.errors import InputError
 from mua.fidelity.canvas import opened
-from mua.fidelity.posing import Poser
 from mua.fidelity.source_faces import source_faces
+from mua.fidelity.source_pose import Poser
 from mua.pose.skeleton import Skeleton
 from mua.scene import Source
 

@@ -4,7 +4,7 @@ from functools import lru_cache
 from pathlib import Path
 
 from mua.errors import InputError
-from mua.gpu import compiled, glslang, sources
+from mua.gpu import glslang, packaged_spirv, sources
 
 KEPT = 256  # entry points that this process has compiled
 
@@ -15,8 +15,8 @@ def spirv(path: Path, entry: str, *, stage: str = "comp") -> bytes:
     Raises InputError if a compiler is needed and absent, the file declares no such kernel, or it does not compile.
     """
     texts, options = made_from(path, entry, stage)
-    digest = compiled.digest(texts.values(), options)
-    code = compiled.find(path, options, digest)
+    digest = packaged_spirv.digest(texts.values(), options)
+    code = packaged_spirv.find(path, options, digest)
     return _compiled_here(path, options, digest) if code is None else code
 
 

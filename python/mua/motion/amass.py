@@ -20,7 +20,7 @@ from mua import rotation
 from mua.arguments import finite_array
 from mua.arrays import Array
 from mua.errors import InputError
-from mua.motion.source import SourceMotion
+from mua.motion.source_motion import SourceMotion
 from mua.pose.clip import Clip
 from mua.pose.signed_expressions import UNIT, as_weights
 from mua.pose.skeleton import Skeleton

@@ -14,7 +14,7 @@ import numpy as np
 from mua import rotation
 from mua.arrays import Array
 from mua.errors import InputError
-from mua.motion.source import SourceMotion
+from mua.motion.source_motion import SourceMotion
 from mua.pose.clip import Clip
 from mua.pose.joint_names import roles
 from mua.pose.skeleton import Skeleton

@@ -1,6 +1,6 @@
 """Joints of a character that nothing moves and that hang on no moved joint: the trunk has to take them along."""
 
-from mua.motion.rest import Rest
+from mua.motion.rest_alignment import Rest
 
 TRUNK = ("hips", "spine")
 

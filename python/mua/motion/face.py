@@ -11,7 +11,7 @@ from mua.characters.messages import listed
 from mua.errors import InputError
 from mua.motion.live_link import read_live_link
 from mua.motion.read import read_motion
-from mua.motion.source import SourceMotion
+from mua.motion.source_motion import SourceMotion
 from mua.pose.clip import Clip
 from mua.pose.expression_names import match_expressions
 from mua.pose.resample import frames_at

@@ -4,7 +4,7 @@ import numpy as np
 
 from mua import rotation
 from mua.arrays import Array
-from mua.motion.rest import frame
+from mua.motion.rest_alignment import frame
 from mua.motion.trunk import AROUND, nearest_axis, trunk_of, unit
 from mua.pose.descriptor import heading_of
 from mua.pose.joint_names import SIDES, Roles, roles

@@ -6,7 +6,7 @@ from mua import rotation
 from mua.arrays import Array
 from mua.motion.contacts import LOW, STANDING, UNDER, floor_of, planted, standing
 from mua.motion.detached import detached_joints
-from mua.motion.rest import IDENTITY, Rest, Y, body_turn
+from mua.motion.rest_alignment import IDENTITY, Rest, Y, body_turn
 from mua.pose.joint_names import SIDES
 
 SOLES = ("foot", "toe")

@@ -11,7 +11,7 @@ from mua.motion.match import Matches, match_joints, require_limbs
 from mua.motion.planted_feet import Feet, plant_feet
 from mua.motion.read import read_motion
 from mua.motion.retarget import retarget
-from mua.motion.source import SourceMotion
+from mua.motion.source_motion import SourceMotion
 from mua.pose.clip import Clip
 from mua.pose.resample import resample
 from mua.pose.skeleton import Skeleton

@@ -15,8 +15,8 @@ from mua.motion.contacts import STANDING, UNDER, floor_of, planted
 from mua.motion.floor import attached, hips_of, led
 from mua.motion.match import Matches
 from mua.motion.pair import Pair
-from mua.motion.rest import Rest, Y, rest_of
-from mua.motion.source import SourceMotion
+from mua.motion.rest_alignment import Rest, Y, rest_of
+from mua.motion.source_motion import SourceMotion
 from mua.motion.trunk import on_all_fours, unit
 from mua.pose.clip import Clip
 from mua.pose.joint_names import SIDES

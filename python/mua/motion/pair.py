@@ -8,7 +8,7 @@ import numpy as np
 from mua import rotation
 from mua.arrays import Array
 from mua.motion.match import Matches
-from mua.motion.source import SourceMotion
+from mua.motion.source_motion import SourceMotion
 from mua.motion.trunk import AT_EASE, SIDES, Trunk, lean_of, leaned, on_all_fours, stands, trunk_of
 from mua.pose.clip import Clip
 from mua.pose.resample import resample

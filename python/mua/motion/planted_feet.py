@@ -17,8 +17,8 @@ from mua.motion.contacts import planted, spans, speed
 from mua.motion.floor import attached
 from mua.motion.match import Matches
 from mua.motion.pair import Pair
-from mua.motion.rest import Rest, rest_of
-from mua.motion.source import SourceMotion
+from mua.motion.rest_alignment import Rest, rest_of
+from mua.motion.source_motion import SourceMotion
 from mua.motion.trunk import degrees, unit
 from mua.pose.clip import Clip
 from mua.pose.joint_names import SIDES

@@ -19,7 +19,7 @@ from mua.arrays import Array
 from mua.errors import InputError
 from mua.files.write import write_bytes
 from mua.limits import LARGEST_RATE, LEAST_RATE
-from mua.motion.source import SourceMotion
+from mua.motion.source_motion import SourceMotion
 from mua.pose.clip import Clip
 from mua.pose.skeleton import Skeleton
 

@@ -12,8 +12,8 @@ from mua.motion.head_and_hands import hand_angles, hand_flaws, head_flaws, head_
 from mua.motion.match import Matches
 from mua.motion.pair import Pair, Side
 from mua.motion.reach import WRONG, Figure, Reach, best_heading, reaches
-from mua.motion.rest import IDENTITY
-from mua.motion.source import SourceMotion
+from mua.motion.rest_alignment import IDENTITY
+from mua.motion.source_motion import SourceMotion
 from mua.motion.trunk import SIDES, degrees, trunk_of, unit
 from mua.pose.clip import Clip
 from mua.pose.skeleton import Skeleton

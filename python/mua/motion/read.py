@@ -7,7 +7,7 @@ from mua.motion.amass import read_amass
 from mua.motion.bvh import read_bvh
 from mua.motion.formats import files_of, require_format
 from mua.motion.poses_file import holds_poses, read_poses
-from mua.motion.source import SourceMotion
+from mua.motion.source_motion import SourceMotion
 
 
 def read_motion(path: Path) -> list[SourceMotion]:

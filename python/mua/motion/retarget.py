@@ -5,10 +5,10 @@ For a target joint t that follows source joint s:
     R_t(f) = W  R_s(f)  C_t  R_t(bind)
 
 C_t says how t's bind pose lies in the space of s: by both rest poses where the source's shows a body and its frames
-turn the trunk as that body stands (mua.motion.rest), else by what the posed skeleton does (mua.motion.posed), or by the
-joints' axes where both rigs have them alike. W turns the result so that the source's rest faces where the
-target's bind faces. The hips' path is scaled by the ratio of leg lengths and set so that standing feet keep the height
-that they have in the bind pose (mua.motion.floor).
+turn the trunk as that body stands (mua.motion.rest_alignment), else by what the posed skeleton does
+(mua.motion.posed_alignment), or by the joints' axes where both rigs have them alike. W turns the result so that the
+source's rest faces where the target's bind faces. The hips' path is scaled by the ratio of leg lengths and set so that
+standing feet keep the height that they have in the bind pose (mua.motion.floor).
 """
 
 from collections.abc import Mapping
@@ -20,9 +20,9 @@ from mua.arrays import Array
 from mua.motion.detached import detached_joints
 from mua.motion.floor import placed
 from mua.motion.match import Matches, missing_limbs
-from mua.motion.posed import posed_calibrations
-from mua.motion.rest import IDENTITY, LIMBS, Rest, body_turn, rest_calibrations, rest_of
-from mua.motion.source import SourceMotion
+from mua.motion.posed_alignment import posed_calibrations
+from mua.motion.rest_alignment import IDENTITY, LIMBS, Rest, body_turn, rest_calibrations, rest_of
+from mua.motion.source_motion import SourceMotion
 from mua.motion.trunk import SIDES, degrees, on_all_fours, stands, trunk_of, unit
 from mua.pose.clip import Clip
 from mua.pose.descriptor import heading_of

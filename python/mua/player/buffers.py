@@ -16,7 +16,7 @@ from mua.avatar.coarser import at_level
 from mua.avatar.model import Model
 from mua.errors import InputError
 from mua.gpu import Buffer, Device
-from mua.gpu.stored import Layout, upload_words
+from mua.gpu.tensor_words import Layout, upload_words
 from mua.kernels.expressions import Targets, by_vertex, pack_entries, reach_of
 from mua.kernels.inverse_dwt import texel_tiles, upsampling_taps, whole_words
 from mua.kernels.splat_project import pack_texels

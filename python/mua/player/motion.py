@@ -10,7 +10,7 @@ from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.characters.messages import listed
 from mua.errors import InputError
-from mua.live.live import Live
+from mua.live.live_pose import Live
 from mua.live.receiver import Receiver
 from mua.motion.face import with_face
 from mua.motion.load import counted, load_motions, unique_names

@@ -13,7 +13,7 @@ from mua.asset.avatar import Avatar
 from mua.avatar.camera import EYE_DISTANCE, Camera
 from mua.errors import InputError
 from mua.gpu import Commands, Device
-from mua.live.live import Live
+from mua.live.live_pose import Live
 from mua.live.receiver import Receiver
 from mua.motion.facing import front_of
 from mua.player.buffers import AvatarBuffers
@@ -30,10 +30,10 @@ from mua.player.motion import (
     with_weights,
 )
 from mua.player.overlays import ground_height
+from mua.player.played_files import Source
 from mua.player.scene import CLEAR, Scene
 from mua.player.schedule import DecodeSchedule, Moment
 from mua.player.shot import GROUND, Look, eyes_of
-from mua.player.source import Source
 from mua.player.splats import SplatFrame
 from mua.player.viewpoint import Viewpoint, framing
 from mua.pose.clip import Clip

@@ -9,9 +9,9 @@ from wgpu.utils.imgui import ImguiRenderer
 
 from mua.gpu import Device
 from mua.player.panel import KEYS, draw_panel
+from mua.player.played_files import Source
 from mua.player.session import Session
 from mua.player.shot import Look
-from mua.player.source import Source
 
 EVENTS = ("pointer_down", "pointer_up", "pointer_move", "wheel", "key_down", "key_up", "char", "resize")
 SETTLING = 3  # images after an event: the panel answers a click in the one after it

@@ -10,8 +10,8 @@ from mua.errors import InputError
 if TYPE_CHECKING:
     from rendercanvas import BaseRenderCanvas
 
+    from mua.player.played_files import Source
     from mua.player.shot import Look
-    from mua.player.source import Source
 
 MISSING = "a window needs a display and there is none; -o writes an image or a video instead"
 

@@ -1,5 +1,6 @@
-"""A clip of motion on one skeleton."""
+"""A clip of motion on one skeleton, and what clips move."""
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Self
 
@@ -12,6 +13,8 @@ from mua.pose.skeleton import Pose
 
 RANGE_OF_MOTION = "range of motion: "  # prefix of the clip names of the built-in range of motion
 REST = "as the file stands"  # name of the pose in which a character's file stands
+STILL = np.radians(1)  # a joint whose rotation varies less in all clips is not moved by them
+LED = 0.001  # of the largest translation, within which places are one
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,3 +105,22 @@ def is_rest(name: str) -> bool:
 def is_averaged(name: str, *, held_out: bool) -> bool:
     """Whether a recording's mean includes the frames of such a clip, as for the user's training motion."""
     return not held_out and not is_range(name)
+
+
+def moved_by(clips: Sequence[Clip], joints: Iterable[int]) -> list[int]:
+    """The `joints` that the clips turn."""
+    if not clips:
+        return []
+    turns = np.concatenate([clip.rotations for clip in clips])
+    away = 2 * np.arccos(np.clip(np.abs(np.sum(turns * turns[:1], axis=-1)), 0, 1))
+    return [int(joint) for joint in joints if away[:, joint].max() > STILL]
+
+
+def show_one_pose(clips: Sequence[Clip]) -> bool:
+    """Whether no joint turns, moves or scales in these clips, and no expression changes: a rest pose, say."""
+    paths = np.concatenate([clip.translations for clip in clips])
+    beside = [clip.stretches.matrices for clip in clips if clip.stretches is not None]
+    beside += [clip.expressions for clip in clips if clip.expressions is not None]
+    changes = any(np.ptp(values, axis=0).any() for values in beside)
+    led = np.ptp(paths, axis=0).max() > LED * np.abs(paths).max()
+    return not (led or changes or moved_by(clips, range(paths.shape[1])))

@@ -15,9 +15,6 @@ from mua.files.write import replacing
 from mua.recording.layout import Header
 from mua.texture.fill import Fill
 
-TENSOR = "; a tensor goes in as tensor.detach().cpu().numpy()"
-HALF_MAX = float(np.finfo(np.float16).max)
-
 
 @dataclass(frozen=True, eq=False)
 class Dynamic:
@@ -63,48 +60,6 @@ def align_rotations(
     turned = np.einsum("nc,nc->n", texture[:, rotation], reference[:, rotation]) < 0
     aligned[turned, rotation] *= -1
     return aligned
-
-
-def check_range(
-    difference: Array,  # [N, 23] from the reference
-    texels: Array,  # [N] row * size + col
-    size: int,
-) -> None:
-    """Raise InputError for the first value that is not finite, or too far from the reference for half precision."""
-    if difference.max(initial=0) <= HALF_MAX and difference.min(initial=0) >= -HALF_MAX:  # also false for nan
-        return
-    texel, channel = np.argwhere(~(np.abs(difference) <= HALF_MAX))[0]
-    row, column = divmod(int(texels[texel]), size)
-    name = next(name for name, where in ATTRIBUTES.items() if where.start <= channel < where.stop)
-    value = difference[texel, channel]
-    problem = f"is {value}" if not np.isfinite(value) else f"differs by {value:.3g} from the reference frame's"
-    raise InputError(
-        f"texture channel {channel} ({name}) at row {row}, column {column} {problem}, "
-        f"expected a finite number no further than {HALF_MAX:.0f} from it"
-    )
-
-
-def valid_texture(
-    texture: Array,  # [N, 23] or [H, W, 23]
-    header: Header,
-    texels: Array,  # [N] row * size + col
-) -> Array:
-    """The values [N, 23] float32 at the valid texels; raises InputError for any other shape."""
-    try:
-        texture = np.asarray(texture)
-    except (TypeError, ValueError, RuntimeError):
-        raise InputError(f"texture is no array that numpy reads{TENSOR}") from None
-    if texture.dtype.kind not in "iuf":
-        raise InputError(f"texture has elements of type {texture.dtype}, expected real numbers")
-    if texture.shape == (header.valid_texels, CHANNELS):
-        return np.asarray(texture, dtype=np.float32)
-    if texture.shape == (header.texels, header.texels, CHANNELS):
-        return texture.reshape(-1, CHANNELS)[texels].astype(np.float32, copy=False)
-    expected = f"[{header.valid_texels}, 23] at the valid texels or [{header.texels}, {header.texels}, 23]"
-    channels = "offset 3, quaternion 4 (wxyz), log scale 3, opacity logit 1, SH 12 (coefficient-major)"
-    if texture.ndim and texture.shape[-1] == CHANNELS + 3:
-        channels += "; the 3 of the base position follow from the mesh and are left out"
-    raise InputError(f"texture has shape {list(texture.shape)}, expected {expected} with the channels {channels}")
 
 
 def save_reference(path: Path, reference: Reference) -> None:

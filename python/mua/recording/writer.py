@@ -19,17 +19,14 @@ from mua.limits import LARGEST_RATE, LEAST_RATE
 from mua.pose.clip import is_averaged
 from mua.pose.skeleton import Pose
 from mua.recording.encode import (
-    HALF_MAX,
-    TENSOR,
     Dynamic,
     Reference,
     align_rotations,
-    check_range,
     filled_subbands,
     load_reference,
     save_reference,
-    valid_texture,
 )
+from mua.recording.frame_checks import HALF_MAX, check_order, check_range, checked_array, checked_pose, valid_texture
 from mua.recording.layout import (
     HEADER,
     REFERENCE,
@@ -50,8 +47,6 @@ from mua.rig.rig import Rig
 from mua.texture.fill import fill_of
 
 POSES_PER_SHARD = 4096  # a shard ends here at the latest, however few of its frames are recorded
-ROTATIONS = ", unit quaternions wxyz; from_axis_angle and from_matrix of mua.rotation make them"
-UNIT_LENGTH_ERROR = 1e-3  # tolerance of a joint quaternion's length: rounding of the source, not another convention
 
 
 @dataclass
@@ -184,8 +179,8 @@ class TeacherWriter:
         where = f"clip {self._clip!r}, frame {state.frames}"
         try:
             if frame is not None:
-                _check_order(frame, state.frames)
-            rotations, translations = _checked_pose(pose, self._header.joints)
+                check_order(frame, state.frames)
+            rotations, translations = checked_pose(pose, self._header.joints)
             self._judge(self._plausible.pose(Pose(rotations, translations)), where)
             encoded = self._encode(Pose(rotations, translations), mesh, texture, where)
         except InputError as error:
@@ -277,7 +272,7 @@ class TeacherWriter:
             return None
         if mesh is None or texture is None:
             raise InputError(f"{'mesh' if mesh is None else 'texture'} is missing, expected both or neither")
-        vertices = _checked("mesh", mesh, (self._header.vertices, 3), np.float32)
+        vertices = checked_array("mesh", mesh, (self._header.vertices, 3), np.float32)
         values = valid_texture(texture, self._header, self._texels.texels)
         check_range(values, self._texels.texels, self._texels.size)
         image = np.asarray(texture) if np.ndim(texture) > 2 else None
@@ -344,41 +339,3 @@ def _remove_leftovers(directory: Path) -> None:
         path.unlink()
     for path in (directory / SHARDS).glob(".*.part"):
         shutil.rmtree(path)
-
-
-def _checked_pose(pose: Pose, joints: int) -> tuple[Array, Array]:
-    if not isinstance(pose, Pose):
-        raise InputError(f"pose is {describe(pose)}; expected a mua.Pose")
-    rotations = _checked("pose rotations", pose.rotations, (joints, 4), np.float64)
-    translations = _checked("pose translations", pose.translations, (joints, 3), np.float64)
-    lengths = np.linalg.norm(rotations, axis=1)
-    joint = int(np.argmax(np.abs(lengths - 1)))
-    if abs(lengths[joint] - 1) > UNIT_LENGTH_ERROR:
-        raise InputError(f"pose rotation of joint {joint} has length {lengths[joint]:.4g}, expected 1")
-    return rotations, translations
-
-
-def _check_order(frame: int, expected: int) -> None:
-    if frame < expected:
-        raise InputError(f"frame={frame} was added already, expected frame={expected}: frames come in order, each once")
-    if frame > expected:
-        remedy = "a frame that the teacher does not evaluate is added with its pose alone"
-        raise InputError(f"frame={frame} comes after frame {expected - 1}, expected frame={expected}: {remedy}")
-
-
-def _checked(name: str, value: Array, shape: tuple[int, ...], dtype: type[np.floating]) -> Array:
-    """A copy of the given type; raises InputError for another shape or a value that is not finite."""
-    try:
-        array = np.asarray(value)
-        if array.dtype.kind not in "iuf":
-            raise TypeError(array.dtype)
-        array = array.astype(dtype)
-    except (TypeError, ValueError, RuntimeError):
-        raise InputError(f"{name} is no array of numbers, expected one of the shape {list(shape)}{TENSOR}") from None
-    if array.shape != shape:
-        hint = ROTATIONS if shape[-1] == 4 else ""
-        raise InputError(f"{name} has shape {list(array.shape)}, expected {list(shape)}{hint}")
-    if not np.isfinite(array).all():
-        where = np.argwhere(~np.isfinite(array))[0].tolist()
-        raise InputError(f"{name} is {array[tuple(where)]} at {where}, expected finite numbers")
-    return array

@@ -8,9 +8,9 @@ import numpy as np
 from mua.arrays import Array
 from mua.kernels.dq_skinning import blend_vertices
 from mua.pose.clip import Clip
+from mua.rig.animated_scale import stretched
 from mua.rig.rig import Rig
 from mua.rig.skinning import Skinning, transform
-from mua.rig.stretched import stretched
 
 MARGIN = 0.06  # share of the figure's size by which cloth may leave the skinned template
 

@@ -5,15 +5,29 @@ in one piece of memory, and joints that do not move a vertex cost nothing. Which
 added depends only on it and the vertex's first joint, so it is found once for each pair of joints, not once a vertex.
 """
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
 from mua import rotation
 from mua.arrays import Array, unique_rows
+from mua.pose.skeleton import Skeleton
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_matrix
+
+
+class Skinned(Protocol):
+    """A surface of V vertices on a skeleton."""
+
+    @property
+    def skeleton(self) -> Skeleton: ...
+
+    @property
+    def skin_indices(self) -> Array: ...  # [V, 8] int32
+
+    @property
+    def skin_weights(self) -> Array: ...  # [V, 8] float32
 
 
 class Skinning:
@@ -80,3 +94,14 @@ def transform(
     moved[1] = py + w * ty + (z * tx - x * tz) + 2 * (w * dy - y * dw + z * dx - x * dz)
     moved[2] = pz + w * tz + (x * ty - y * tx) + 2 * (w * dz - z * dw + x * dy - y * dx)
     return moved.T
+
+
+def moving_joints(surface: Skinned) -> Array:
+    """Whether each joint [J] moves the surface itself or through a descendant."""
+    skeleton = surface.skeleton
+    moving = np.zeros(len(skeleton.names), dtype=bool)
+    moving[np.unique(surface.skin_indices[surface.skin_weights > 0])] = True
+    for joint in range(len(moving) - 1, -1, -1):  # parents come before children
+        if moving[joint] and skeleton.parents[joint] >= 0:
+            moving[skeleton.parents[joint]] = True
+    return moving

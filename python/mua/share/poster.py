@@ -12,8 +12,8 @@ from mua.asset.avatar import Avatar
 from mua.asset.read import read
 from mua.avatar.camera import FILL, Camera, orbit
 from mua.motion.facing import front_of
+from mua.player.cpu_image import Reference, over
 from mua.player.motion import named_clip, player_clips
-from mua.player.picture import Reference, over
 from mua.player.toggles import Toggles
 from mua.pose.clip import Clip
 from mua.rig.bounds import root_positions

@@ -11,9 +11,9 @@ from typing import Any, TypeVar
 import torch
 import warp as wp
 
-from mua.splatting.kernels import passes
 from mua.splatting.projection import Eye, TorchSplats, colors_seen, half_extents, project
 from mua.splatting.tiles import TILE, Tiles, assign, join, split
+from mua.splatting.warp_passes import passes
 from mua.training.threads import in_order
 
 PARTS = 4  # of an image's tiles on the CPU, at most as many at once

@@ -11,7 +11,7 @@ from mua.student.branches import fit_apart
 from mua.student.factorize import blendshapes, frame_weights, separable_blendshapes
 from mua.student.model import Alphas, Branch, outer_products
 from mua.student.settings import Settings
-from mua.student.source import Source
+from mua.student.subband_source import Source
 from mua.student.texture_metric import in_texture, to_subbands
 from mua.training.memory import release_memory
 from mua.training.optimise import Progress, Run

@@ -5,8 +5,8 @@ from dataclasses import asdict, replace
 from mua.asset.count import flops, parameters
 from mua.asset.tensors import Storage
 from mua.errors import InputError
-from mua.student.outline import Body, outline
 from mua.student.settings import LEAN_SIZES, Budget, Ranks, Settings, Sizes
+from mua.student.shapes import Body, outline
 
 # Bytes of a file beside what is learnt.
 TEXEL_BYTES = 17.5  # where a valid texel lies on the template, and its share of the surface

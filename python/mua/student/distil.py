@@ -20,13 +20,13 @@ from mua.pose.descriptor import choose_joints, choose_translated, describe, grou
 from mua.pose.encoding import PoseEncoding
 from mua.recording import Recording
 from mua.rig.bones import figure_scale
-from mua.rig.moving import moving_joints
+from mua.rig.skinning import moving_joints
 from mua.student.finetune import HUE
 from mua.student.local import body_parts
 from mua.student.model import Student
-from mua.student.outline import Body
 from mua.student.sensitivity import measure_sensitivities
 from mua.student.settings import Settings, StageName
+from mua.student.shapes import Body
 from mua.student.stages import Samples, stages, train
 from mua.training.checkpoint import Checkpoints, run_key
 from mua.training.optimise import Progress

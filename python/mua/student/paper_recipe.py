@@ -15,7 +15,7 @@ from mua.student.coarse import MeshPca
 from mua.student.finetune import draw_frames, finetune, weighted
 from mua.student.model import Branch, Coarse, linear_layers
 from mua.student.settings import Settings
-from mua.student.source import Source
+from mua.student.subband_source import Source
 from mua.student.targets import channel_weights, still_channels
 from mua.training.optimise import Run, optimise
 from mua.training.processes import ALONE, Processes, Share

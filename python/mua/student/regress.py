@@ -15,11 +15,11 @@ from mua.student.local import Locality
 from mua.student.model import build_mlp, linear_layers
 from mua.student.points import draw_close, draw_points
 from mua.student.settings import Generalisation
+from mua.training.kernel_regression import RIDGE, Smooth, Sum, Through, fit_beyond, fit_smoother
 from mua.training.memory import release_memory
 from mua.training.optimise import Run, optimise
 from mua.training.processes import Share
 from mua.training.schedule import Schedule
-from mua.training.smoother import RIDGE, Smooth, Sum, Through, fit_beyond, fit_smoother
 
 # Chosen on held-out walks and turns.
 FIRST_LAYER = 0.3  # scale of the first layer's weights at the start: small ones make smooth functions

@@ -23,7 +23,7 @@ from mua.student.paper_recipe import fit_branch_from_noise, fit_coarse_from_nois
 from mua.student.regress import POSED, SWUNG, regress
 from mua.student.sensitivity import STAGE as SENSITIVITIES
 from mua.student.settings import Settings, StageName
-from mua.student.source import Source, hold
+from mua.student.subband_source import Source, hold
 from mua.student.targets import Targets, channel_weights, joint_targets, least_spread, still_channels
 from mua.training.checkpoint import Checkpoints
 from mua.training.memory import release_memory

@@ -161,7 +161,8 @@ def local_normals(
     around = np.stack(sums, axis=1) + faces[own]
     away, near = cKDTree(points.places).query(points.places, k=min(ABOUT, len(own)), workers=-1)
     away, near = away.reshape(len(own), -1), near.reshape(len(own), -1)
-    step = np.maximum(np.linalg.norm(steps, axis=2).mean(axis=1, keepdims=True), np.finfo(float).tiny)
+    least = np.finfo(float).tiny ** 0.25  # metres, by whose square can be divided
+    step = np.maximum(np.linalg.norm(steps, axis=2).mean(axis=1, keepdims=True), least)
     weights = np.exp(-((away / (NEARNESS * step)) ** 2) / 2)
     weights[np.einsum("nc,nkc->nk", faces[own], faces[own[near]]) < AVERTED] = 0
     total = np.einsum("nk,nkc->nc", weights, around[near])

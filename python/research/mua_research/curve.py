@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter
 
-from mua.evaluation.filmed import SPLITS, TEACHER, FilmedEntry, Judged, mean
+from mua.evaluation.capture_scores import SPLITS, TEACHER, FilmedEntry, Judged, mean
 from mua.evaluation.settings import OURS, SYSTEM_NAMES
 
 DPI = 120

@@ -19,7 +19,7 @@ from mua.student.coarse import fit_coarse, set_pca
 from mua.student.distil import prepare
 from mua.student.model import Student
 from mua.student.settings import Settings
-from mua.student.source import hold
+from mua.student.subband_source import hold
 from mua.student.targets import channel_weights
 from mua.training.optimise import Run
 from mua.wavelets import Bands

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from mua.evaluation.filmed import SPLITS, FilmedEntry, Judged, Standing, mean
+from mua.evaluation.capture_scores import SPLITS, FilmedEntry, Judged, Standing, mean
 from mua.evaluation.settings import OURS
 
 

@@ -15,14 +15,13 @@ from mua.motion.range.mixed import mixed
 from mua.motion.range.moves import MOVES, STAND, other_side
 from mua.motion.range.played import RATE, played
 from mua.motion.retarget import retarget
-from mua.motion.source import SourceMotion
+from mua.motion.source_motion import SourceMotion
 from mua.motion.trunk import trunk_of
-from mua.pose.clip import RANGE_OF_MOTION, Clip
+from mua.pose.clip import RANGE_OF_MOTION, Clip, moved_by
 from mua.pose.joint_names import SIDES
-from mua.pose.moved import moved_by
 from mua.pose.skeleton import Skeleton
 from mua.rig.character import Character
-from mua.rig.moving import moving_joints
+from mua.rig.skinning import moving_joints
 
 ROUND = 160  # frames recorded of all clips, after which another round of them shows more than more of these
 PLAYED = 10  # frames for each that is recorded, at most

@@ -18,7 +18,7 @@ from scipy.spatial import cKDTree
 from mua import rotation
 from mua.arrays import Array
 from mua.rig.character import Character
-from mua.rig.moving import moving_joints
+from mua.rig.skinning import moving_joints
 from mua.teachers.simulated.rays import Boxes, Tree, meets
 from mua.teachers.simulated.surface import SkinnedSurface
 from mua.training.threads import in_order

@@ -8,10 +8,10 @@ import numpy as np
 from mua import rotation
 from mua.arrays import Array
 from mua.pose.clip import Clip
+from mua.rig.animated_scale import stretched
 from mua.rig.bones import figure_scale, fit_bones
 from mua.rig.character import Character
 from mua.rig.skinning import Skinning, transform
-from mua.rig.stretched import stretched
 from mua.teachers.simulated.folds import Folds
 from mua.teachers.simulated.looseness import estimate_looseness
 from mua.teachers.simulated.simulation import Simulation, hangs

@@ -7,9 +7,9 @@ import numpy as np
 
 from mua.arrays import Array
 from mua.pose.clip import Clip, Stretches
+from mua.rig.animated_scale import stretched
 from mua.rig.character import Character
 from mua.rig.skinning import Skinning
-from mua.rig.stretched import stretched
 
 
 @dataclass(frozen=True, eq=False)

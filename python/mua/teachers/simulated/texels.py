@@ -19,7 +19,7 @@ from mua.texture.deconvolution import deconvolved
 from mua.texture.depths import depths
 from mua.texture.sh import LINEAR
 from mua.texture.sharpness import Sharpness, sharpness
-from mua.texture.sheet import surfel_opacities
+from mua.texture.sheet_opacity import surfel_opacities
 from mua.texture.stretch import SurfelStretch
 from mua.texture.surfels import rest_surfels
 

@@ -17,7 +17,7 @@ from mua.pose.descriptor import choose_joints, choose_translated
 from mua.pose.encoding import RATE, PoseEncoding
 from mua.pose.windows import window_of
 from mua.rig.bones import figure_scale
-from mua.rig.moving import moving_joints
+from mua.rig.skinning import moving_joints
 from mua.splatting.projection import Eye
 from mua.teachers.simulated.still import StillTeacher
 from mua.teachers.trained.image_losses import Material, Perceptual

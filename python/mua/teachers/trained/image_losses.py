@@ -8,8 +8,8 @@ from torch import Tensor, nn
 
 from mua.channels import ATTRIBUTES, GEOMETRY
 from mua.rig.bones import figure_scale
-from mua.splatting.likeness import structural_similarity
 from mua.splatting.projection import TorchSplats
+from mua.splatting.ssim import structural_similarity
 from mua.teachers.trained.colour_correction import ColourCorrection
 from mua.teachers.trained.model import Frame, TeacherModel, draw_views
 from mua.teachers.trained.pose_refinement import PoseRefinement

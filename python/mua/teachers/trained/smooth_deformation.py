@@ -13,7 +13,7 @@ from mua.pose.encoding import PoseEncoding
 from mua.rig.bones import figure_scale
 from mua.rig.rig import Rig
 from mua.teachers.trained.graph_networks import skin_of_parts
-from mua.training.smoother import Smoother, fit_smoother
+from mua.training.kernel_regression import Smoother, fit_smoother
 
 # Chosen on training clips, each left out in turn.
 NOISE = 0.3  # variance of a frame's deformation beside what follows from its pose, relative to the latter

@@ -1,5 +1,5 @@
 // Two skeletons at rest, and how each joint of one lies in the joint that moves it by what both rest poses show. Reference:
-// python/mua/motion/rest.py, which says what is done and why.
+// python/mua/motion/rest_alignment.py, which says what is done and why.
 
 import { conjugate, rotate } from "../rotation.js";
 import { world } from "../skeleton.js";

@@ -4,7 +4,7 @@ namespace Mua.Motion
 {
     /// <summary>
     /// How far to raise an avatar whose figure does not tell where its floor is, so that the lower foot stood on it in the last
-    /// seconds (python/mua/live/posing.py).
+    /// seconds (python/mua/live/retargeting.py).
     /// </summary>
     internal sealed class Footing
     {

@@ -7,7 +7,7 @@ namespace Mua.Motion
 {
     /// <summary>
     /// How the joints of an avatar at rest lie in those of another figure at rest: limb by limb, so that a T-pose, an A-pose and
-    /// legs apart all mean the same (python/mua/motion/rest.py, which says what is done and why).
+    /// legs apart all mean the same (python/mua/motion/rest_alignment.py, which says what is done and why).
     /// </summary>
     internal sealed class RestAlignment
     {

@@ -35,7 +35,7 @@ namespace Mua.Motion
 
     /// <summary>
     /// An avatar's and another figure's skeleton at rest in the world, and which joints of the figure move which of the avatar
-    /// (`Rest` of python/mua/motion/rest.py).
+    /// (`Rest` of python/mua/motion/rest_alignment.py).
     /// </summary>
     internal sealed class RestPoses
     {

@@ -8,7 +8,7 @@ namespace Mua.Motion
     /// <summary>
     /// Puts poses of another figure onto an avatar as they come, by what every bone does in the world: the rotations of
     /// python/mua/motion/retarget.py for a figure that stands at rest. The path of the hips is scaled to the avatar's legs; where
-    /// the figure does not stand on its floor at rest, the avatar's height follows its feet, as in python/mua/live/posing.py.
+    /// the figure does not stand on its floor at rest, the avatar's height follows its feet, as in python/mua/live/retargeting.py.
     /// </summary>
     public sealed class Retargeter
     {
