@@ -7,7 +7,7 @@ import numpy as np
 from mua.arrays import Array
 from mua.capture.capture import Capture
 from mua.capture.fit import Posed, Seen
-from mua.capture.outline import pixels
+from mua.capture.silhouette import pixels
 
 MUCH = 0.2  # of the surface: soles, armpits and the inside of clothes are less
 NAMED = 3  # joints
