@@ -8,7 +8,9 @@ import pytest
 
 from mua.avatar.camera import orbit
 from mua.characters.read import read_character
-from mua.fidelity.compare import compare
+from mua.evaluation import metrics
+from mua.fidelity.background import over
+from mua.fidelity.compare import PoseFidelity, compare
 from mua.fidelity.fitting import fit, in_view
 from mua.rig.character import Character
 from mua.teachers.simulated.still import StillTeacher
@@ -26,6 +28,12 @@ def column(tmp_path: Path) -> Character:
     return read_character(glb.save(tmp_path / "column.glb"), atlas_size=128)
 
 
+def flip(pose: PoseFidelity) -> float:
+    """The mean of all sides, none of which the fit has seen, on grey."""
+    pairs = [[over(image, 0.5).astype(np.float32) for image in (shot.splats, shot.source)] for shot in pose.shots]
+    return float(np.mean([metrics.compare(*pair)[0].flip for pair in pairs]))
+
+
 def test_fitted_splats_are_nearer_to_the_source_in_all_poses(column: Character) -> None:
     assert column.source is not None
     teacher = StillTeacher(column, texels=TEXELS)
@@ -34,6 +42,7 @@ def test_fitted_splats_are_nearer_to_the_source_in_all_poses(column: Character) 
     assert fitted.iou > laid.iou
     for before, after in zip(laid.poses, fitted.poses, strict=True):
         assert after.agreement.psnr > before.agreement.psnr
+        assert flip(after) < flip(before)
 
 
 def test_without_steps_nothing_is_corrected(column: Character) -> None:

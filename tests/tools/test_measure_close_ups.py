@@ -34,7 +34,7 @@ def test_a_dark_ring_outside_the_silhouette_is_a_fringe() -> None:
     ringed = disc(19, 0.1) * (1 - source[..., 3:]) + source
     found = measured(source, ringed, nowhere, scale=SCALE)
     assert 0.2 < found.dark < 0.5
-    assert np.isnan(found.border)
+    assert np.isnan([found.border, found.border_flip]).all()
     assert measured(source, disc(19, 0.8), nowhere, scale=SCALE).dark == 0
     assert found.psnr < measured(source, disc(17, 0.8), nowhere, scale=SCALE).psnr
 
@@ -46,6 +46,14 @@ def test_only_pixels_near_a_border_count_there() -> None:
     found = measured(source, splats, near, scale=SCALE)
     assert found.border == MOST_DECIBELS
     assert found.psnr < 40
+    assert found.border_flip == 0 < found.flip
+
+
+def test_an_eye_that_is_farther_away_sees_less() -> None:
+    source, nowhere, row = disc(16, 0.8), np.zeros((64, 64), bool), np.arange(64)[:, None, None]
+    striped = source * np.where(row % 2, [1.15, 1.15, 1.15, 1], [0.85, 0.85, 0.85, 1])
+    near, far = (measured(source, striped, nowhere, scale=SCALE, per_degree=each).flip for each in (25, 100))
+    assert 0 < far < 0.5 * near
 
 
 def test_writes_each_part_from_each_side(

@@ -10,7 +10,7 @@ with the light and the moving cloth that it learnt, and once more with the splat
 whose figures follow those of the splats. Give --fit with it, the fit-*.npy of the bake's work directory.
 
 PSNR is over all pixels that either of them covers, on grey, and over those within BORDER of an open border of the
-surface. FLIP is the mean over the covered pixels, of which PER_DEGREE lie along a degree of the eye. "Dark" is the
+surface. FLIP is the mean over the same pixels, of which --per-degree lie along a degree of the eye. "Dark" is the
 share of pixels within FRINGE outside the source's silhouette that are darker than both the nearest pixel of the source
 and the background: a fringe. The bound, after "of", is the PSNR of the surface itself under its atlas averaged to so
 many texels. The splats are fitted to the source first, in poses of the built-in range of motion, as a bake fits them.
@@ -62,7 +62,7 @@ from mua.teachers.simulated.surface import MovedSurface, SkinnedSurface
 
 GREY = 0.5
 BORDER, FRINGE = 0.02, 0.01  # metres about an open border, and outside the silhouette
-PER_DEGREE = 25  # pixels of a degree of the eye, about those of a headset, for FLIP
+PER_DEGREE = 25.0  # pixels of a degree of the eye, about those of a headset, for FLIP
 COVERED = 0.02  # opacity
 DARKER = 0.04  # of the sRGB range
 SIDES = {"front": 0.0, "behind": 150.0}  # degrees round the figure
@@ -76,6 +76,7 @@ class Figures:
     psnr: float  # dB, of what either covers
     border: float  # dB, within BORDER of an open border; NaN where there is none
     flip: float  # 0 where none is seen to 1, of what either covers
+    border_flip: float  # within BORDER of an open border; NaN where there is none
     dark: float  # share of the pixels within FRINGE outside the silhouette
 
 
@@ -85,6 +86,7 @@ def measured(
     near_border: Array,  # [H, W] bool
     *,
     scale: float,  # pixels along a metre
+    per_degree: float = PER_DEGREE,
 ) -> Figures:
     """Compare one image of a part."""
     silhouette = source[..., 3] > COVERED
@@ -94,10 +96,13 @@ def measured(
     ring = (away > 0) & (away <= FRINGE * scale)
     beside = np.minimum(one.mean(axis=-1)[tuple(nearest)], GREY)
     dark = ring & (other.mean(axis=-1) < beside - DARKER)
+    flip = perceived(one, other, per_degree)
+    bordering = flip[covered & near_border]
     return Figures(
         psnr=decibels(one, other, covered),
         border=decibels(one, other, covered & near_border),
-        flip=perceived(one, other, covered),
+        flip=float(flip[covered].mean()),
+        border_flip=float(bordering.mean()) if bordering.size else float("nan"),
         dark=float(dark.sum() / max(ring.sum(), 1)),
     )
 
@@ -109,12 +114,12 @@ def decibels(one: Array, other: Array, where: Array) -> float:
     return float(min(-10 * np.log10(max(np.mean((one - other)[where] ** 2), np.finfo(float).tiny)), MOST_DECIBELS))
 
 
-def perceived(one: Array, other: Array, where: Array) -> float:
-    """The mean FLIP over these pixels."""
+def perceived(one: Array, other: Array, per_degree: float) -> Array:
+    """FLIP of each pixel [H, W]."""
     images = (np.ascontiguousarray(image, np.float32) for image in (one, other))
-    seen = {"ppd": PER_DEGREE}
+    seen = {"ppd": per_degree}
     differs = flip_evaluator.evaluate(*images, "LDR", applyMagma=False, computeMeanError=False, parameters=seen)
-    return float(differs[0][..., 0][where].mean(dtype=np.float64))
+    return np.asarray(differs[0][..., 0], np.float64)
 
 
 def parts_of(character: Character, places: Array) -> Iterator[tuple[str, Array]]:
@@ -202,6 +207,7 @@ def close_ups(
     fit: Path | None,
     motion: Sequence[Path],
     hanging: bool,
+    per_degree: float,
 ) -> Iterator[tuple[str, Array, dict[str, Figures]]]:
     """Each part from each side in each pose: its name, images [size, n size, 3], the figures of all but the source."""
     character = load_character(path, uv="auto", seed=0, detail=read_detail((), uv="auto"))
@@ -240,10 +246,11 @@ def close_ups(
                     splats = {name: splat(frame, camera) for name, frame in frames.items()}
                     border = near(places[edges].mean(axis=1), camera, pixels=BORDER * scale)
                     images = {"bound": textured([places], camera), **splats}
+                    seen = {"scale": scale, "per_degree": per_degree}
                     yield (
                         f"{moment.name}, {part_name}, {side}",
                         np.hstack([over(image, GREY) for image in (source, *splats.values())]),
-                        {name: measured(source, image, border, scale=scale) for name, image in images.items()},
+                        {name: measured(source, image, border, **seen) for name, image in images.items()},
                     )
 
 
@@ -259,6 +266,7 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--fit", type=Path, help="corrections that the bake of --avatar kept, in place of a fit")
     parser.add_argument("--motion", type=Path, nargs="+", default=[], help="motion files to pose the characters by")
     parser.add_argument("--hanging", action="store_true", help="compare with the surface as loose parts of it hang")
+    parser.add_argument("--per-degree", type=float, default=PER_DEGREE, help="pixels of a degree of the eye, for FLIP")
     parser.add_argument("-o", "--output", type=Path, required=True)
     options = parser.parse_args(arguments)
     options.output.mkdir(parents=True, exist_ok=True)
@@ -277,6 +285,7 @@ def main(arguments: list[str] | None = None) -> None:
             fit=options.fit,
             motion=options.motion,
             hanging=options.hanging,
+            per_degree=options.per_degree,
         )
         for name, image, figures in drawn:
             file = options.output / f"{path.stem} {name.replace(', ', ' ')}.png"
@@ -295,7 +304,8 @@ def _line(name: str, figures: dict[str, Figures]) -> str:
         return " -> ".join(format(getattr(one, field), form) for one in shown)
 
     own = f"{name}: {each('psnr', '.2f')} dB of {figures['bound'].psnr:.2f} dB, at borders {each('border', '.2f')} dB"
-    return own + f", FLIP {each('flip', '.4f')}, {each('dark', '.1%')} dark outside"
+    seen = f", FLIP {each('flip', '.4f')}, at borders {each('border_flip', '.4f')}"
+    return own + seen + f", {each('dark', '.1%')} dark outside"
 
 
 if __name__ == "__main__":

@@ -19,11 +19,12 @@ from mua.fidelity.canvas import opened
 from mua.fidelity.compare import spread
 from mua.fidelity.painter import Painter
 from mua.fidelity.source_pose import Moment, Poser, skinned
+from mua.fidelity.texel_adam import TexelAdam
 from mua.pose.clip import Clip
 from mua.rig.character import Character
 from mua.scene import Source
 from mua.splatting.posing import TorchRig, blend_texels, blend_vertices, place_splats, surface_points
-from mua.splatting.projection import Eye, TorchSplats
+from mua.splatting.projection import Eye
 from mua.splatting.rasterise import rasterise
 from mua.teachers.simulated.still import StillTeacher
 from mua.training.threads import while_next
@@ -35,8 +36,8 @@ SIDE = 1.25  # pixels along an image for a texel along the texture: what is in i
 SAMPLES = 2  # along a side of a pixel of the source: as good as 3, and half as many
 NEARNESS = 4.0  # pixels for a texel in the middle of an image
 ELEVATIONS = -0.35, 0.5  # radians
-RATES = {"offset": 0.1, "size": 0.08, "colour": 0.01}  # offsets over a texel's width
-BETAS, EPSILON = (0.9, 0.99), 0.1
+RATES = 3 * (0.3,) + 3 * (0.24,) + 3 * (0.015,)  # of offsets over a texel's width, log scales and display values
+KNEE = 0.1  # of a display value: larger errors count by their size, smaller ones by its square
 PRIOR = 2.0  # pixels for which each colour stands as it is: what few images show keeps its own
 LAST_RATE = 0.1  # of a rate, in the last step
 BEYOND = 1.1  # of the half of an image, within which the centre of a splat may lie
@@ -64,6 +65,7 @@ class _View:
     camera: Camera
     source: Tensor  # [H, W, 4] premultiplied sRGB and alpha
     background: Tensor  # [3]
+    rate: float  # of RATES
 
 
 def fit(
@@ -98,50 +100,46 @@ def _descend(
     rng: np.random.Generator,
     progress: Callable[[int], None],
 ) -> Array:
-    """Adam on the squared error of one image after another, each on a background of its own."""
+    """Adam on the error of one image after another, each on a background of its own."""
     count, threads = len(poses[0].texture), torch.get_num_threads()
-    changes = {name: torch.zeros(count, 3, requires_grad=True) for name in RATES}
-    optimiser = torch.optim.Adam(
-        [{"params": [change], "lr": RATES[name]} for name, change in changes.items()], betas=BETAS, eps=EPSILON
-    )
-    schedule = torch.optim.lr_scheduler.ExponentialLR(optimiser, LAST_RATE ** (1 / max(steps, 1)))
+    changes, adam, rates = torch.zeros(count, len(RATES)), TexelAdam(count, len(RATES)), torch.tensor(RATES)
     widths = poses[0].texture[:, 7:9].mean(dim=1, keepdim=True).exp()
 
     def views() -> Iterator[_View]:
         for step in range(steps):
             shown = poses[step % len(poses)]
             camera, background = _camera(shown, widths, side=side, rng=rng), rng.uniform(size=3)
-            source = paint(shown.drawn, camera)
-            yield _View(shown, camera, torch.tensor(source), torch.tensor(background).float())
+            source, rate = torch.tensor(paint(shown.drawn, camera)), LAST_RATE ** (step / steps)
+            yield _View(shown, camera, source, torch.tensor(background).float(), rate)
 
     def descend(view: _View) -> None:
-        shown, camera, background = view.shown, view.camera, view.background
-        target = view.source[..., :3] + (1 - view.source[..., 3:]) * background
-        splats = _splats(shown, _by(changes, widths), in_view(shown.centres, camera))
-        image = rasterise(splats, Eye.of(camera, shown.texture), shown.bounds, background, threads=threads)
-        optimiser.zero_grad()
-        ((image - target).square().sum() + PRIOR * changes["colour"].square().sum()).backward()
-        optimiser.step()
-        schedule.step()
+        texels = torch.from_numpy(in_view(view.shown.centres, view.camera))
+        own = changes[texels].requires_grad_()
+        (gradient,) = torch.autograd.grad(_error(view, texels, own, _by(own, widths[texels]), threads=threads), own)
+        visible = gradient[:, :3].any(dim=1)  # the colour of the others has a gradient by PRIOR alone
+        seen = texels[visible]
+        changes[seen] -= view.rate * rates * adam(seen, gradient[visible])
 
     with thread_share(threads):  # its operations are too small to be divided
         for done, _ in enumerate(while_next(descend, views()), start=1):
             progress(done)
-    with torch.no_grad():
-        return np.asarray(_by(changes, widths).numpy())
+    return np.asarray(_by(changes, widths).numpy())
 
 
-def _by(changes: dict[str, Tensor], widths: Tensor) -> Tensor:
+def _error(view: _View, texels: Tensor, changes: Tensor, by: Tensor, *, threads: int) -> Tensor:
+    """Charbonnier's, beside the square's where it is small, and the prior's."""
+    shown, background = view.shown, view.background
+    target = view.source[..., :3] + (1 - view.source[..., 3:]) * background
+    splats = place_splats(shown.texel_dq[texels], shown.surface[texels], _corrected(shown.texture[texels], by))
+    image = rasterise(splats, Eye.of(view.camera, shown.texture), shown.bounds, background, threads=threads)
+    differs = ((image - target).square() + KNEE**2).sqrt()
+    return 2 * KNEE * differs.sum() + PRIOR * changes[:, 6:].square().sum()
+
+
+def _by(changes: Tensor, widths: Tensor) -> Tensor:
     """[N, 9], metres, of log scales and of display values."""
-    sizes = changes["size"].clamp(SMALLEST, LARGEST)
-    return torch.cat([changes["offset"] * widths, sizes, changes["colour"]], dim=1)
-
-
-def _splats(shown: _Shown, by: Tensor, texels: Array) -> TorchSplats:
-    """The corrected splats of these texels."""
-    chosen = torch.from_numpy(texels)
-    texture = _corrected(shown.texture[chosen], by.index_select(0, chosen))
-    return place_splats(shown.texel_dq[chosen], shown.surface[chosen], texture)
+    offset, size, colour = changes.split(3, dim=1)
+    return torch.cat([offset * widths, size.clamp(SMALLEST, LARGEST), colour], dim=1)
 
 
 def in_view(centres: Array, camera: Camera) -> Array:
