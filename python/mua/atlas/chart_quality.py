@@ -86,9 +86,9 @@ def distorted(
         return np.zeros(0, bool)
     charts = np.unique(charts, return_inverse=True)[1]
     flat = even(corners, positions, charts)
-    widest = np.linalg.eigvalsh(_metrics(flat, positions))[:, 1]
+    scales = np.linalg.svd(np.linalg.pinv(flat[:, 1:] - flat[:, :1]) @ (positions[:, 1:] - positions[:, :1]))[1]
     surface = areas(positions)
-    pulled = np.bincount(charts, surface * (widest > PULLED**2))
+    pulled = np.bincount(charts, surface * (scales[:, 0] > PULLED))
     return (pulled > DISTORTED * np.bincount(charts, surface))[charts]
 
 
@@ -102,7 +102,10 @@ def isometric(
     The map is the root of the chart's mean metric tensor; the mean is taken of logarithms, over the chart's area in UV,
     so that neither slivers nor a fold that hides in a few texels rule it.
     """
-    value, axes = np.linalg.eigh(_metrics(corners, positions))
+    edges = corners[:, 1:] - corners[:, :1]  # [F, 2 edges, 2]
+    sides = positions[:, 1:] - positions[:, :1]
+    flat = np.linalg.pinv(edges)
+    value, axes = np.linalg.eigh(flat @ sides @ sides.transpose(0, 2, 1) @ flat.transpose(0, 2, 1))
     weight = areas(corners) * (value[:, 0] > 0)
     logs = (axes * np.log(np.where(value > 0, value, 1))[:, None]) @ axes.transpose(0, 2, 1)
     mean = np.stack([np.bincount(charts, weight * logs[:, i, j]) for i, j in ((0, 0), (0, 1), (0, 1), (1, 1))], axis=1)
@@ -123,20 +126,6 @@ def even(
     flat = isometric(corners, positions, charts)
     drawn, surface = np.bincount(charts, areas(flat)), np.bincount(charts, areas(positions))
     return flat * np.clip(np.sqrt(_ratio(surface, drawn)), 1, MOST_EVENED)[charts, None, None]
-
-
-def _metrics(
-    corners: Array,  # [F, 3, 2] UV
-    positions: Array,  # [F, 3, 3] metres
-) -> Array:
-    """Metric tensors [F, 2, 2] of the maps from UV to the surface: products of what steps along u and v become."""
-    edges, sides = corners[:, 1:] - corners[:, :1], positions[:, 1:] - positions[:, :1]
-    (a, b), (c, d) = edges.transpose(1, 2, 0)
-    area, size = a * d - b * c, np.sum(edges**2, axis=(1, 2))
-    flat = np.abs(area) <= np.finfo(float).eps * size  # the pseudoinverse of a line, or of a point
-    turned = np.where(flat, [[a, c], [b, d]], [[d, -b], [-c, a]]) / np.where(flat, np.where(size > 0, size, 1), area)
-    steps = turned.transpose(2, 0, 1) @ sides
-    return np.asarray(steps @ steps.transpose(0, 2, 1))
 
 
 def _ratio(a: Array, b: Array) -> Array:

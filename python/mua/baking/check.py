@@ -1,7 +1,7 @@
 """A look at a character and its motion before a bake: what the splats keep of the one and the clips of the other."""
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -10,7 +10,6 @@ import numpy as np
 from PIL import Image
 from threadpoolctl import threadpool_limits
 
-from mua.arrays import Array
 from mua.baking.listener import Listener
 from mua.baking.settings import BakeSettings
 from mua.baking.sources import clips_of, faced, load_baked_character
@@ -18,9 +17,9 @@ from mua.characters.expression_file import write_expression_names
 from mua.errors import InputError
 from mua.fidelity import report
 from mua.fidelity.compare import Fidelity, compare
+from mua.fidelity.face_process import FaceProcess
 from mua.fidelity.face_sheet import face_sheet
 from mua.fidelity.sheet import fidelity_sheet
-from mua.fidelity.source_process import SourceProcess
 from mua.files.write import replacing, require_writable, write_bytes
 from mua.motion.load import LoadedMotion, counted, load_motions
 from mua.motion.mapping import write_mapping
@@ -57,9 +56,9 @@ def check(settings: BakeSettings, listener: Listener) -> Check:
     """
     require_writable(settings.output)
     listener.stage("character")
-    with threadpool_limits(1, user_api="blas"), SourceProcess() as process:  # as in a bake
+    with threadpool_limits(1, user_api="blas"), FaceProcess() as process:  # as in a bake
         character = load_baked_character(settings, read=process.begin)
-        return _check(settings, character, listener, faces=process.images)
+        return _check(settings, character, listener, faces=process)
 
 
 def _check(
@@ -67,7 +66,7 @@ def _check(
     character: Character,
     listener: Listener,
     *,
-    faces: Callable[[], Sequence[Array] | None],  # as `compare` takes them
+    faces: FaceProcess,
 ) -> Check:
     listener.stage("motion")
     loaded = _loaded(settings, character)
@@ -111,7 +110,7 @@ def fidelity_of(
     *,
     texels: int,
     teacher: StillTeacher | None = None,
-    faces: Callable[[], Sequence[Array] | None] | None = None,  # as `compare` takes them
+    faces: FaceProcess | None = None,
 ) -> tuple[Fidelity | None, tuple[str, ...]]:
     """How much the splats look like the character, and a sentence for what is poor; None where nothing is measured.
 

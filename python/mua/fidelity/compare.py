@@ -1,7 +1,7 @@
 """Draws the source character and its splats in the same poses and views, and compares the images."""
 
 import itertools
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import moderngl
@@ -11,14 +11,17 @@ from mua.arrays import Array
 from mua.avatar.camera import Camera, orbit
 from mua.avatar.decode import pose_splats
 from mua.fidelity.canvas import opened
+from mua.fidelity.face_process import FaceProcess
 from mua.fidelity.faces import FaceFidelity, compare_faces
 from mua.fidelity.measure import Agreement, Pair, agreement, together, worst_place
 from mua.fidelity.painter import Painter
 from mua.fidelity.posing import Moment, Poser, dominant_joints, skinned
+from mua.fidelity.source_faces import camera_of
+from mua.fidelity.splat_faces import StillFace
 from mua.fidelity.splats import SplatPainter
 from mua.pose.clip import Clip
 from mua.rig.character import Character
-from mua.scene import Source
+from mua.scene import Scene, Source
 from mua.teachers.simulated.still import StillTeacher
 
 SCREEN = (384, 512)  # width, height, pixels
@@ -83,23 +86,25 @@ def compare(
     *,
     teacher: StillTeacher,
     source: Source,
-    faces: Callable[[], Sequence[Array] | None] | None = None,
+    faces: FaceProcess | None = None,
 ) -> Fidelity:
     """Draw a character's source and its still `teacher`'s splats, as the file stands and in frames spread over `clips`.
 
-    With `faces`, also close up in each of the character's expressions; it returns the source's images of them (of
-    `source_faces`), or None where they are to be drawn here.
+    With `faces`, also close up in each of the character's expressions, which that process draws meanwhile.
     Raises InputError where this machine has no OpenGL.
     """
     poser = Poser(source, character.skeleton)
     moments = [poser.rest(), *(poser.of_clip(clip, frame) for clip, frame in spread(clips, POSED))]
+    face = face_of(teacher, source.scene, moments[0]) if faces else None
+    if faces and face:
+        faces.go_on(face)
     with opened() as context:
         studio = _Studio(context, source, poser)
         views = [ROUND, *({side: degrees} for side, degrees in itertools.islice(itertools.cycle(IN_MOTION), POSED))]
         poses = tuple(studio.pictured(teacher, m, v) for m, v in zip(moments, views, strict=False))
-        if faces is None:
+        if faces is None or face is None:
             return Fidelity(poses)
-        return Fidelity(poses, compare_faces(context, teacher, source=source, rest=moments[0], drawn=faces()))
+        return Fidelity(poses, compare_faces(context, face, scene=source.scene, rest=moments[0], process=faces))
 
 
 def spread(clips: Sequence[Clip], count: int) -> list[tuple[Clip, int]]:
@@ -107,6 +112,15 @@ def spread(clips: Sequence[Clip], count: int) -> list[tuple[Clip, int]]:
     frames = [(clip, frame) for clip in clips for frame in range(len(clip))]
     count = min(count, len(frames))
     return [frames[int((i + 0.5) * len(frames) / count)] for i in range(count)]
+
+
+def face_of(teacher: StillTeacher, scene: Scene, rest: Moment) -> StillFace | None:
+    """The splats of the pose at rest and the camera that looks at their face; None where there are no expressions."""
+    expressions = teacher.rig.expressions
+    if expressions is None:
+        return None
+    still = teacher.frame(rest.pose)
+    return StillFace(teacher.rig, still.mesh, still.texture, rest.pose, camera_of(scene, rest), expressions)
 
 
 class _Studio:
