@@ -14,11 +14,11 @@ from mua.characters.read import read_character
 from mua.fidelity import report, source_faces
 from mua.fidelity.canvas import Area, opened
 from mua.fidelity.compare import face_of
-from mua.fidelity.face_process import FaceProcess
 from mua.fidelity.face_sheet import face_sheet
 from mua.fidelity.faces import FaceFidelity, compare_faces
 from mua.fidelity.posing import Poser
 from mua.fidelity.source_faces import Patch
+from mua.fidelity.source_process import SourceProcess
 from mua.fidelity.splats import SplatPainter
 from mua.rig.character import Character
 from mua.teachers.simulated.still import StillTeacher
@@ -31,19 +31,19 @@ def grinning_character(tmp_path: Path) -> Character:
     return read_character(grinning(tmp_path), atlas_size=256)
 
 
-def drawn_here(character: Character, teacher: StillTeacher, process: FaceProcess | None = None) -> FaceFidelity:
+def drawn_here(character: Character, teacher: StillTeacher, process: SourceProcess | None = None) -> FaceFidelity:
     """The faces of the character as the file stands, drawn by this process but for what another has drawn."""
     assert character.source is not None
     rest = Poser(character.source, character.skeleton).rest()
     face = face_of(teacher, character.source.scene, rest)
     assert face is not None
     with opened() as context:
-        return compare_faces(context, face, scene=character.source.scene, rest=rest, process=process or FaceProcess())
+        return compare_faces(context, face, scene=character.source.scene, rest=rest, process=process or SourceProcess())
 
 
 def test_expressions_look_like_the_files_own_targets(tmp_path: Path) -> None:
     character = grinning_character(tmp_path)
-    fidelity, warnings = fidelity_of(character, (), texels=TEXELS, faces=FaceProcess())
+    fidelity, warnings = fidelity_of(character, (), texels=TEXELS, process=SourceProcess())
     assert fidelity is not None
     assert fidelity.face is not None
     assert [shot.name for shot in fidelity.face.expressions] == ["lean", "lift"]
@@ -62,7 +62,7 @@ def test_a_wrong_expression_is_measured_and_named(tmp_path: Path) -> None:
     character = grinning_character(tmp_path)
     assert character.expressions is not None
     wrong = replace(character.expressions, offsets=character.expressions.offsets * np.array([-1, 1, 1], np.float32))
-    fidelity, warnings = fidelity_of(replace(character, expressions=wrong), (), texels=TEXELS, faces=FaceProcess())
+    fidelity, warnings = fidelity_of(replace(character, expressions=wrong), (), texels=TEXELS, process=SourceProcess())
     assert fidelity is not None
     assert fidelity.face is not None
     lean, lift = fidelity.face.expressions
@@ -90,8 +90,8 @@ def test_what_a_process_leaves_is_drawn_here(tmp_path: Path) -> None:
     teacher = StillTeacher(character, texels=TEXELS)
     whole = drawn_here(character, teacher)
 
-    class Stopping(FaceProcess):
-        def splats(self) -> Iterator[Patch]:
+    class Stopping(SourceProcess):
+        def splat_faces(self) -> Iterator[Patch]:
             return iter([Patch(whole_screen(), whole.rest.splats), Patch(Area(0, 0, 0, 0), np.empty((0, 0, 4)))])
 
     parts = drawn_here(character, teacher, Stopping())

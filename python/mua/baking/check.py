@@ -16,10 +16,10 @@ from mua.baking.sources import clips_of, faced, load_baked_character
 from mua.characters.expression_file import write_expression_names
 from mua.errors import InputError
 from mua.fidelity import report
-from mua.fidelity.compare import Fidelity, compare
-from mua.fidelity.face_process import FaceProcess
+from mua.fidelity.compare import Fidelity, compare, sittings_of
 from mua.fidelity.face_sheet import face_sheet
 from mua.fidelity.sheet import fidelity_sheet
+from mua.fidelity.source_process import SourceProcess
 from mua.files.write import replacing, require_writable, write_bytes
 from mua.motion.load import LoadedMotion, counted, load_motions
 from mua.motion.mapping import write_mapping
@@ -56,9 +56,9 @@ def check(settings: BakeSettings, listener: Listener) -> Check:
     """
     require_writable(settings.output)
     listener.stage("character")
-    with threadpool_limits(1, user_api="blas"), FaceProcess() as process:  # as in a bake
+    with threadpool_limits(1, user_api="blas"), SourceProcess() as process:  # as in a bake
         character = load_baked_character(settings, read=process.begin)
-        return _check(settings, character, listener, faces=process)
+        return _check(settings, character, listener, process=process)
 
 
 def _check(
@@ -66,7 +66,7 @@ def _check(
     character: Character,
     listener: Listener,
     *,
-    faces: FaceProcess,
+    process: SourceProcess,
 ) -> Check:
     listener.stage("motion")
     loaded = _loaded(settings, character)
@@ -74,7 +74,7 @@ def _check(
     listener.stage("comparison with source")
     clips, made = _clips(settings, character, loaded)
     clips, of_face = faced(character, clips, settings.face)
-    fidelity, warnings = fidelity_of(character, clips, texels=settings.student.texels, faces=faces)
+    fidelity, warnings = fidelity_of(character, clips, texels=settings.student.texels, process=process)
     pairs, unmatched = _matched(character, loaded) if settings.motions else ((), ())
     written = []
     if fidelity is not None:
@@ -110,17 +110,19 @@ def fidelity_of(
     *,
     texels: int,
     teacher: StillTeacher | None = None,
-    faces: FaceProcess | None = None,
+    process: SourceProcess | None = None,
 ) -> tuple[Fidelity | None, tuple[str, ...]]:
     """How much the splats look like the character, and a sentence for what is poor; None where nothing is measured.
 
-    The splats are those of `teacher`, or as many as `texels` says. With `faces`, also in each of its expressions.
+    The splats are those of `teacher`, or as many as `texels` says. With a `process`, also in each of its expressions.
     """
     if character.source is None:
         return None, (WITHOUT_FILE,)
     try:
+        if process is not None:
+            process.draw_poses(sittings_of(character, clips, character.source))
         teacher = teacher or StillTeacher(character, texels=texels)
-        fidelity = compare(character, clips, teacher=teacher, source=character.source, faces=faces)
+        fidelity = compare(character, clips, teacher=teacher, source=character.source, process=process)
     except InputError as error:
         return None, (f"The splats were not compared with the source: {error}.",)
     return fidelity, report.sentences(fidelity)

@@ -1,16 +1,15 @@
 """Each expression of a character, drawn from its file and as an avatar shows it: a close look at the face."""
 
-import itertools
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import moderngl
 
 from mua.arrays import Array
-from mua.fidelity.face_process import FaceProcess
 from mua.fidelity.measure import Agreement, agreement
 from mua.fidelity.posing import Moment
 from mua.fidelity.source_faces import Patch, source_faces
+from mua.fidelity.source_process import SourceProcess, continued
 from mua.fidelity.splat_faces import StillFace, splat_faces
 from mua.scene import Scene
 
@@ -53,7 +52,7 @@ def compare_faces(
     *,
     scene: Scene,
     rest: Moment,
-    process: FaceProcess,
+    process: SourceProcess,
 ) -> FaceFidelity:
     """Draw source and splats at rest and in each expression alone, where no `process` has drawn them.
 
@@ -61,25 +60,16 @@ def compare_faces(
     at rest, bent as an avatar bends them.
     """
     names = AT_REST, *face.expressions.names
-    of_source = _continued(process.source(), source_faces(context, scene, rest, face.expressions.names))
-    of_splats = _continued(process.splats(), splat_faces(context, face))
-    rest_shot, *shots = _shots(names, zip(of_source, of_splats, strict=True))
+    of_source = continued(process.faces(), source_faces(context, scene, rest, face.expressions.names))
+    of_splats = continued(process.splat_faces(), splat_faces(context, face))
+    rest_shot, *shots = _shots(names, of_source, of_splats)
     return FaceFidelity(rest_shot, tuple(shots))
 
 
-def _continued(drawn: Iterable[Patch], here: Iterator[Patch]) -> Iterator[Patch]:
-    """What a process has drawn, and from where it stopped on what is drawn here."""
-    count = 0
-    for patch in drawn:
-        count += 1
-        yield patch
-    yield from itertools.islice(here, count, None)
-
-
-def _shots(names: Iterable[str], patches: Iterator[tuple[Patch, Patch]]) -> Iterator[ExpressionShot]:
+def _shots(names: Iterable[str], of_source: Iterator[Patch], of_splats: Iterator[Patch]) -> Iterator[ExpressionShot]:
     """Shots of source and splats, the first of them whole."""
     at_rest: tuple[Array, Array] | None = None
-    for name, (of_source, of_splats) in zip(names, patches, strict=True):
-        at_rest = at_rest or (of_source.image, of_splats.image)
-        images = of_source.laid_over(at_rest[0]), of_splats.laid_over(at_rest[1])
-        yield ExpressionShot(name, agreement(*images), at_rest, (of_source, of_splats))
+    for name, *other in zip(names, of_source, of_splats, strict=False):  # names first: no image more than these
+        at_rest = at_rest or (other[0].image, other[1].image)
+        images = [patch.laid_over(image) for patch, image in zip(other, at_rest, strict=True)]
+        yield ExpressionShot(name, agreement(*images), at_rest, (other[0], other[1]))
