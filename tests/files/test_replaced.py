@@ -15,6 +15,7 @@ import mua
 from mua.baking import check, distillation
 from mua.baking.settings import BakeSettings
 from mua.capture import Capture, CaptureClip, write_capture
+from mua.files import png
 from mua.motion.mapping import write_mapping
 from mua.motion.poses_file import write_poses
 from mua.recording.rig_file import write_rig
@@ -68,7 +69,7 @@ def test_what_a_command_writes(
 
 def test_what_a_check_of_a_character_writes(opened: Callable[[str], Path], tmp_path: Path) -> None:
     found = check.Check(None, (), (), (), (), (), ())
-    check.write_sheet(opened("a_check.png"), Image.new("RGB", (2, 2)))
+    png.write_png(opened("a_check.png"), Image.new("RGB", (2, 2)))
     settings = BakeSettings(tmp_path / "a.muaavatar", tmp_path, preset("tiny"))
     check.write_json(opened("a.json"), check.as_dict(settings, found))
     assert replaced(tmp_path / "a_check.png")

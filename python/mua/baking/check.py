@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from PIL import Image
 from threadpoolctl import threadpool_limits
 
 from mua.baking.listener import Listener
@@ -20,7 +19,8 @@ from mua.fidelity.compare import Fidelity, compare, sittings_of
 from mua.fidelity.face_sheet import face_sheet
 from mua.fidelity.sheet import fidelity_sheet
 from mua.fidelity.source_process import SourceProcess
-from mua.files.write import replacing, require_writable, write_bytes
+from mua.files.png import write_png
+from mua.files.write import require_writable, write_bytes
 from mua.motion.load import LoadedMotion, counted, load_motions
 from mua.motion.mapping import write_mapping
 from mua.motion.match import JointPair, joint_pairs, match_joints, require_limbs, unmatched_target
@@ -31,7 +31,6 @@ from mua.pose.encoding import RATE
 from mua.rig.character import Character
 from mua.teachers.simulated.still import StillTeacher
 
-FAST = 1  # of a PNG's levels: a tenth larger than by the best, in a third of the time
 MADE = 30  # recorded frames whose range of motion is made where a character has no motion: all of its moves begin
 WITHOUT_FILE = "the procedural character has no file, so there is nothing to compare its splats with"
 
@@ -79,10 +78,10 @@ def _check(
     written = []
     if fidelity is not None:
         written.append(settings.beside("_check.png"))
-        write_sheet(written[0], fidelity_sheet(fidelity))
+        write_png(written[0], fidelity_sheet(fidelity))
         if fidelity.face is not None:
             written.append(settings.beside("_check_face.png"))
-            write_sheet(written[-1], face_sheet(fidelity.face))
+            write_png(written[-1], face_sheet(fidelity.face))
     if character.expressions is not None:
         written.append(settings.beside("_expressions.json"))
         write_expression_names(written[-1], character.expression_names)
@@ -126,12 +125,6 @@ def fidelity_of(
     except InputError as error:
         return None, (f"The splats were not compared with the source: {error}.",)
     return fidelity, report.sentences(fidelity)
-
-
-def write_sheet(path: Path, picture: Image.Image) -> None:
-    """Write a picture of source beside splats."""
-    with replacing(path) as temporary:
-        picture.save(temporary, compress_level=FAST)
 
 
 def as_dict(settings: BakeSettings, found: Check) -> dict[str, Any]:
