@@ -115,5 +115,24 @@ def test_splats_that_an_expression_moves_lie_among_the_others_as_if_all_were_dra
             assert not np.allclose(shot.splats, face.rest.splats, atol=0.1)
 
 
+def test_splats_over_a_layer_of_those_behind_them_are_the_picture_of_all(tmp_path: Path) -> None:
+    character = grinning_character(tmp_path)
+    assert character.source is not None
+    teacher = StillTeacher(character, texels=TEXELS)
+    rest = Poser(character.source, character.skeleton).rest()
+    still, camera = teacher.frame(rest.pose), source_faces.camera_of(character.source.scene, rest)
+    posed = pose_splats(teacher.rig, still.mesh, texture=still.texture, pose=rest.pose)
+    area = Area(100, 120, 180, 160)
+    with opened() as context:
+        paint = SplatPainter(context, source_faces.SCREEN)
+        quads = paint.quads(posed, camera)
+        layers, whole = paint.layers(quads), paint.drawn(quads)
+        assert len({layer.key for layer in layers}) == len(layers) > 4
+        for layer in layers:
+            np.testing.assert_array_equal(paint.drawn(quads, area, layer), area.of(whole))
+            front = paint.drawn(quads.between(layer.key))
+            assert layer.image is None or not np.array_equal(front, whole)
+
+
 def whole_screen() -> Area:
     return Area(0, 0, *source_faces.SCREEN)

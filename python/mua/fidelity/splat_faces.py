@@ -14,7 +14,7 @@ from mua.avatar.camera import Camera
 from mua.avatar.decode import express, pose_splats
 from mua.fidelity.canvas import Area
 from mua.fidelity.source_faces import SCREEN, Patch
-from mua.fidelity.splats import SplatPainter
+from mua.fidelity.splats import BEYOND, SplatPainter
 from mua.kernels.expressions import reach_of
 from mua.pose.skeleton import Pose
 from mua.rig.expressions import Expressions
@@ -48,6 +48,7 @@ class _Splats:
         self._paint = SplatPainter(context, SCREEN)
         self._posed = pose_splats(face.rig, face.mesh, texture=face.texture, pose=face.pose)
         self._quads = self._paint.quads(self._posed, face.camera)
+        self._layers = self._paint.layers(self._quads)
         self.at_rest = self._paint.drawn(self._quads)
 
     def expressed(self, number: int) -> Patch:
@@ -61,7 +62,10 @@ class _Splats:
         mesh, texture = express(rig, face.mesh, texture=face.texture[some], weights=weights)
         posed = replace(pose_splats(rig, mesh, texture=texture, pose=face.pose), bounds=self._posed.bounds)
         moved = self._paint.quads(posed, face.camera)
-        area = self._paint.area(self._quads.among(some), moved)
+        before = self._quads.among(some)
+        area = self._paint.area(before, moved)
         if area.empty:
             return Patch(area, area.of(self.at_rest))
-        return Patch(area, self._paint.drawn(self._quads.exchanged(some, moved), area))
+        farthest = min(quads.keys.min(initial=BEYOND - 1) for quads in (before, moved))
+        behind = next(layer for layer in reversed(self._layers) if layer.key <= farthest)
+        return Patch(area, self._paint.drawn(self._quads.exchanged(some, moved), area, behind))
