@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from mua.files.png import BANDS, write_png
+from mua.files.png import BAND, write_png
 
 
-@pytest.mark.parametrize("size", [(1, 1), (3, 2), (7, BANDS - 1), (31, 3 * BANDS + 1), (640, 211)])
+@pytest.mark.parametrize("size", [(1, 1), (3, 2), (7, BAND), (31, 2 * BAND + 1), (640, 211)])
 def test_other_programs_read_the_same_pixels(tmp_path: Path, size: tuple[int, int]) -> None:
     pixels = np.random.default_rng(0).integers(0, 256, (*size[::-1], 3), dtype=np.uint8)
     write_png(tmp_path / "picture.png", Image.fromarray(pixels))

@@ -87,7 +87,7 @@ class Canvas:
 
     def begin(self, area: Area | None = None, onto: moderngl.Framebuffer | None = None) -> None:
         """Draw here from now on, onto nothing or onto a copy; only in a part of the image where one is given."""
-        self._target.scissor = None
+        self._target.scissor = self._box(None)
         if onto is not None:
             self._context.copy_framebuffer(self._target, onto)
         self._target.use()
