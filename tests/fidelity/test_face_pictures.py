@@ -1,6 +1,6 @@
 """The close look at a face: each expression of the file beside the splats' own, drawn only where it moves them."""
 
-from collections.abc import Callable
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -8,34 +8,42 @@ import numpy as np
 import pytest
 from face_files import grinning
 
-from mua.arrays import Array
 from mua.avatar.decode import express, pose_splats
 from mua.baking.check import fidelity_of
 from mua.characters.read import read_character
-from mua.fidelity import faces, report, source_faces
+from mua.fidelity import report, source_faces
 from mua.fidelity.canvas import Area, opened
+from mua.fidelity.compare import face_of
 from mua.fidelity.face_sheet import face_sheet
-from mua.fidelity.source_pose import Poser
+from mua.fidelity.faces import FaceFidelity, compare_faces
+from mua.fidelity.posed_source import Poser
+from mua.fidelity.source_faces import Patch
+from mua.fidelity.source_process import SourceProcess
 from mua.fidelity.splats import SplatPainter
 from mua.rig.character import Character
 from mua.teachers.simulated.still import StillTeacher
 
 TEXELS = 192
 ROUNDED = 64 * 2**-24  # colours of some splats over each other, of channels that lie in memory in another order
-ONLY_THERE = source_faces.patched
 
 
 def grinning_character(tmp_path: Path) -> Character:
     return read_character(grinning(tmp_path), atlas_size=256)
 
 
-def drawn_here() -> None:
-    """No other process has drawn the source's faces."""
+def drawn_here(character: Character, teacher: StillTeacher, process: SourceProcess | None = None) -> FaceFidelity:
+    """The faces of the character as the file stands, drawn by this process but for what another has drawn."""
+    assert character.source is not None
+    rest = Poser(character.source, character.skeleton).rest()
+    face = face_of(teacher, character.source.scene, rest)
+    assert face is not None
+    with opened() as context:
+        return compare_faces(context, face, scene=character.source.scene, rest=rest, process=process or SourceProcess())
 
 
 def test_expressions_look_like_the_files_own_targets(tmp_path: Path) -> None:
     character = grinning_character(tmp_path)
-    fidelity, warnings = fidelity_of(character, (), texels=TEXELS, faces=drawn_here)
+    fidelity, warnings = fidelity_of(character, (), texels=TEXELS, process=SourceProcess())
     assert fidelity is not None
     assert fidelity.face is not None
     assert [shot.name for shot in fidelity.face.expressions] == ["lean", "lift"]
@@ -54,7 +62,7 @@ def test_a_wrong_expression_is_measured_and_named(tmp_path: Path) -> None:
     character = grinning_character(tmp_path)
     assert character.expressions is not None
     wrong = replace(character.expressions, offsets=character.expressions.offsets * np.array([-1, 1, 1], np.float32))
-    fidelity, warnings = fidelity_of(replace(character, expressions=wrong), (), texels=TEXELS, faces=drawn_here)
+    fidelity, warnings = fidelity_of(replace(character, expressions=wrong), (), texels=TEXELS, process=SourceProcess())
     assert fidelity is not None
     assert fidelity.face is not None
     lean, lift = fidelity.face.expressions
@@ -66,28 +74,29 @@ def test_an_expression_drawn_where_it_moves_is_the_picture_drawn_whole(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     character = grinning_character(tmp_path)
-    assert character.source is not None
     teacher = StillTeacher(character, texels=TEXELS)
-    rest = Poser(character.source, character.skeleton).rest()
-    areas: list[Area] = []
-
-    def patched(image: Array, area: Area, drawn: Callable[[], Array]) -> Array:
-        areas.append(area)
-        return ONLY_THERE(image, area, drawn)
-
-    for module in (faces, source_faces):
-        monkeypatch.setattr(module, "patched", patched)
-    with opened() as context:
-        parts = faces.compare_faces(context, teacher, source=character.source, rest=rest)
-        assert areas
-        assert all(not area.empty and area != whole_screen() for area in areas)
-        monkeypatch.setattr(Area, "about", classmethod(lambda *_: whole_screen()))
-        whole = faces.compare_faces(context, teacher, source=character.source, rest=rest)
-    assert parts is not None
-    assert whole is not None
+    parts = drawn_here(character, teacher)
+    areas = [patch.area for shot in parts.expressions for patch in shot.other]
+    assert all(not area.empty and area != whole_screen() for area in areas)
+    monkeypatch.setattr(Area, "about", classmethod(lambda *_: whole_screen()))
+    whole = drawn_here(character, teacher)
     for part, all_of_it in zip(parts.expressions, whole.expressions, strict=True):
         np.testing.assert_array_equal(part.source, all_of_it.source)
         np.testing.assert_array_equal(part.splats, all_of_it.splats)
+
+
+def test_what_a_process_leaves_is_drawn_here(tmp_path: Path) -> None:
+    character = grinning_character(tmp_path)
+    teacher = StillTeacher(character, texels=TEXELS)
+    whole = drawn_here(character, teacher)
+
+    class Stopping(SourceProcess):
+        def splat_faces(self) -> Iterator[Patch]:
+            return iter([Patch(whole_screen(), whole.rest.splats), Patch(Area(0, 0, 0, 0), np.empty((0, 0, 4)))])
+
+    parts = drawn_here(character, teacher, Stopping())
+    np.testing.assert_array_equal(parts.expressions[0].splats, whole.rest.splats)
+    np.testing.assert_array_equal(parts.expressions[1].splats, whole.expressions[1].splats)
 
 
 def test_splats_that_an_expression_moves_lie_among_the_others_as_if_all_were_drawn_anew(tmp_path: Path) -> None:
@@ -96,15 +105,33 @@ def test_splats_that_an_expression_moves_lie_among_the_others_as_if_all_were_dra
     teacher = StillTeacher(character, texels=TEXELS)
     rest = Poser(character.source, character.skeleton).rest()
     still, camera = teacher.frame(rest.pose), source_faces.camera_of(character.source.scene, rest)
+    face = drawn_here(character, teacher)
     with opened() as context:
-        face = faces.compare_faces(context, teacher, source=character.source, rest=rest)
-        assert face is not None
         for shot, weights in zip(face.expressions, np.eye(2, dtype=np.float32), strict=True):
             mesh, texture = express(teacher.rig, still.mesh, texture=still.texture, weights=weights)
             posed = pose_splats(teacher.rig, mesh, texture=texture, pose=rest.pose)
             expected = SplatPainter(context, source_faces.SCREEN)(posed, camera)
             assert np.quantile(np.abs(shot.splats - expected), 0.99) < ROUNDED
             assert not np.allclose(shot.splats, face.rest.splats, atol=0.1)
+
+
+def test_splats_over_a_layer_of_those_behind_them_are_the_picture_of_all(tmp_path: Path) -> None:
+    character = grinning_character(tmp_path)
+    assert character.source is not None
+    teacher = StillTeacher(character, texels=TEXELS)
+    rest = Poser(character.source, character.skeleton).rest()
+    still, camera = teacher.frame(rest.pose), source_faces.camera_of(character.source.scene, rest)
+    posed = pose_splats(teacher.rig, still.mesh, texture=still.texture, pose=rest.pose)
+    area = Area(100, 120, 180, 160)
+    with opened() as context:
+        paint = SplatPainter(context, source_faces.SCREEN)
+        quads = paint.quads(posed, camera)
+        layers, whole = paint.layers(quads), paint.drawn(quads)
+        assert len({layer.key for layer in layers}) == len(layers) > 4
+        for layer in layers:
+            np.testing.assert_array_equal(paint.drawn(quads, area, layer), area.of(whole))
+            front = paint.drawn(quads.between(layer.key))
+            assert layer.image is None or not np.array_equal(front, whole)
 
 
 def whole_screen() -> Area:

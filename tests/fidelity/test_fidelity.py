@@ -24,8 +24,8 @@ from mua.fidelity.canvas import opened
 from mua.fidelity.compare import SCREEN, Fidelity, PoseFidelity, Shot, spread
 from mua.fidelity.measure import MOST_DECIBELS, Agreement, agreement, worst_place
 from mua.fidelity.painter import Painter
+from mua.fidelity.posed_source import Poser, skinned
 from mua.fidelity.sheet import fidelity_sheet
-from mua.fidelity.source_pose import Poser, skinned
 from mua.fidelity.splats import SplatPainter
 from mua.kernels.splat_project import LEAST_OPACITY
 from mua.rig.character import Character

@@ -1,25 +1,33 @@
-"""Faces of a file that a process draws beside this one."""
+"""A character and its faces that a process draws beside this one."""
 
 import shutil
+from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from face_files import grinning
 
 from mua.atlas.character_surfaces import Surfaces
+from mua.atlas.uv import build_atlas
+from mua.baking.check import fidelity_of
 from mua.characters.read import read_surfaces
-from mua.fidelity import source_process
+from mua.fidelity import compare, faces, source_process
 from mua.fidelity.canvas import opened
+from mua.fidelity.compare import face_of, sittings_of
 from mua.fidelity.source_faces import source_faces
-from mua.fidelity.source_pose import Poser
+from mua.fidelity.source_poses import source_poses
 from mua.fidelity.source_process import SourceProcess
+from mua.fidelity.splat_faces import splat_faces
+from mua.teachers.simulated.still import StillTeacher
 
 
 @pytest.fixture
 def surfaces(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Surfaces:
     """Two expressions, which are as many as a process starts for."""
-    monkeypatch.setattr(source_process, "FEWEST", 2)
+    monkeypatch.setattr(source_process, "FEW", 2)
     return read_surfaces(grinning(tmp_path))
 
 
@@ -29,21 +37,58 @@ def test_the_process_draws_what_this_one_would(surfaces: Surfaces) -> None:
     assert expressions is not None
     with SourceProcess() as process:
         process.begin(surfaces)
-        drawn = process.images()
-    rest = Poser(source, surfaces.skeleton).rest()
+        character = build_atlas(surfaces, uv="auto", size=256)
+        sittings = sittings_of(character, character.clips, source)
+        process.draw_poses(sittings)
+        rest = sittings[0].moment
+        face = face_of(StillTeacher(character, texels=96), source.scene, rest)
+        assert face is not None
+        process.draw_faces_of(face)
+        answers, poses = (list(process.faces()), list(process.splat_faces())), list(process.poses())
     with opened() as context:
-        here = list(source_faces(context, source.scene, rest, expressions.names))
-    assert drawn is not None
-    np.testing.assert_array_equal(drawn, here)
-    assert not np.array_equal(drawn[0], drawn[1])
+        np.testing.assert_array_equal(poses, list(source_poses(context, source.scene, sittings)))
+        here = list(source_faces(context, source.scene, rest, expressions.names)), list(splat_faces(context, face))
+    for drawn, expected in zip(answers, here, strict=True):
+        assert [patch.area for patch in drawn] == [patch.area for patch in expected]
+        for patch, other in zip(drawn, expected, strict=True):
+            np.testing.assert_array_equal(patch.image, other.image)
+        assert not np.array_equal(drawn[1].image, drawn[1].area.of(drawn[0].image))
 
 
-def test_few_expressions_are_left_to_be_drawn_here(surfaces: Surfaces, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(source_process, "FEWEST", 3)
+def test_nothing_that_the_process_draws_is_drawn_here(surfaces: Surfaces, monkeypatch: pytest.MonkeyPatch) -> None:
+    def nothing(*_: object) -> Iterator[Any]:
+        raise AssertionError
+        yield
+
+    for module, name in ((compare, "source_poses"), (faces, "source_faces"), (faces, "splat_faces")):
+        monkeypatch.setattr(module, name, nothing)
+    with SourceProcess() as process:
+        process.begin(surfaces)
+        fidelity, _ = fidelity_of(build_atlas(surfaces, uv="auto", size=256), (), texels=96, process=process)
+    assert fidelity is not None
+    assert fidelity.face is not None
+    assert len(fidelity.face.expressions) == 2
+
+
+def test_a_character_of_many_triangles_is_drawn_by_the_process(
+    surfaces: Surfaces, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(source_process, "SMALL", len(surfaces.faces))
+    plain = replace(surfaces, expressions=None)
+    assert plain.source is not None
+    with SourceProcess() as process:
+        process.begin(plain)
+        sittings = sittings_of(build_atlas(plain, uv="auto", size=256), (), plain.source)
+        process.draw_poses(sittings)
+        assert len(list(process.poses())) == sum(len(sitting.views) for sitting in sittings)
+
+
+def test_little_is_left_to_be_drawn_here(surfaces: Surfaces, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(source_process, "FEW", 3)
     monkeypatch.delattr(source_process.subprocess, "Popen")
     with SourceProcess() as process:
         process.begin(surfaces)
-        assert process.images() is None
+        assert not list(process.faces())
 
 
 @pytest.mark.parametrize("program", [shutil.which("false"), "/no/such/program"])
@@ -53,4 +98,4 @@ def test_where_the_process_fails_all_is_left_to_be_drawn_here(
     monkeypatch.setattr(source_process.sys, "executable", program)
     with SourceProcess() as process:
         process.begin(surfaces)
-        assert process.images() is None
+        assert not list(process.faces())

@@ -14,7 +14,7 @@ from mua.avatar.decode import pose_splats
 from mua.baking.sources import load_character
 from mua.channels import ATTRIBUTES
 from mua.fidelity.measure import MOST_DECIBELS
-from mua.fidelity.source_pose import Poser
+from mua.fidelity.posed_source import Poser
 from mua.teachers.simulated.still import StillTeacher
 
 pytestmark = pytest.mark.usefixtures("first_try")

@@ -48,7 +48,7 @@ from mua.fidelity.background import over
 from mua.fidelity.canvas import opened
 from mua.fidelity.measure import MOST_DECIBELS
 from mua.fidelity.painter import Painter
-from mua.fidelity.source_pose import Moment, Poser, skinned
+from mua.fidelity.posed_source import Moment, Poser, skinned
 from mua.fidelity.splats import SplatPainter
 from mua.motion.range import motion_range
 from mua.pose.clip import Clip

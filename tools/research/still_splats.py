@@ -16,7 +16,7 @@ import numpy as np
 
 from mua.atlas.detail import read_detail
 from mua.baking.sources import load_character
-from mua.fidelity.source_pose import Poser
+from mua.fidelity.posed_source import Poser
 
 STILL_TEACHER = "mua.teachers.still", "mua.teachers.simulated.still"
 DECODE = "mua.decode", "mua.avatar.decode"

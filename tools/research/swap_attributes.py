@@ -25,7 +25,7 @@ from mua.avatar.decode import Splats, decode_clip_frame, pose_splats
 from mua.channels import ATTRIBUTES
 from mua.fidelity.background import over
 from mua.fidelity.canvas import opened
-from mua.fidelity.source_pose import Poser
+from mua.fidelity.posed_source import Poser
 from mua.fidelity.splats import SplatPainter
 from mua.teachers.simulated.surface import SkinnedSurface
 

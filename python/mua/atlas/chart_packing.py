@@ -35,6 +35,10 @@ class _Layout:
     scale: float
     side: int  # of the square around all, cells
 
+    @property
+    def fineness(self) -> float:
+        return self.scale / self.side
+
 
 def pack(
     corners: Array,  # [F, 3, 2] all charts in one scale
@@ -51,11 +55,12 @@ def pack(
 
     tries, half = TRIES[: max(CHARTS_TRIED // len(points), 1)], _half_gutters(shape, len(points))
     longest = max(np.ptp(p, axis=1).max() for p in points)
-    layouts = []
+    best: _Layout | None = None
     for by_box, full in tries:
         scale = min(_fitting(full * FULL, half), float(GRID / longest))
-        layouts.append(_laid(shape, len(points), by_box=by_box, scale=scale))
-    best = max(layouts, key=lambda layout: layout.scale / layout.side)
+        layout = _laid(shape, len(points), by_box=by_box, scale=scale, beyond=best.fineness if best else 0.0)
+        best = layout if best is None or layout.fineness > best.fineness else best
+    assert best is not None
     placed = best.scale * np.einsum("fij,fkj->fki", best.turns[charts], scaled) + best.shifts[charts][:, None]
     placed -= placed.min(axis=(0, 1))
     return placed / max(placed.max(), np.finfo(float).tiny)
@@ -67,10 +72,11 @@ def _laid(
     *,
     by_box: bool,  # the order is that of their boxes, not of their cells
     scale: float,
+    beyond: float,  # fineness: a layout that does not come to more is left unfinished
 ) -> _Layout:
     """Lay down all charts in this scale, or in a smaller one where they must."""
     while True:
-        layout = _attempt(shape, count, scale=scale, by_box=by_box)
+        layout = _attempt(shape, count, scale=scale, by_box=by_box, beyond=beyond)
         if layout:
             return layout
         scale *= SMALLER
@@ -88,7 +94,7 @@ def _fitting(full: float, half: float) -> float:
     return float(np.sqrt(full / FULL + half**2) - half)  # gutters grow with length, charts with area: quadratic
 
 
-def _attempt(shape: Shapes, count: int, *, scale: float, by_box: bool) -> _Layout | None:
+def _attempt(shape: Shapes, count: int, *, scale: float, by_box: bool, beyond: float) -> _Layout | None:
     """A layout in this scale, None where something fits nowhere."""
     shapes = [shape(chart, scale, 0.0) for chart in range(count)]
     cells = np.array([one.cells for one in shapes])
@@ -108,6 +114,8 @@ def _attempt(shape: Shapes, count: int, *, scale: float, by_box: bool) -> _Layou
             return None
         grid.take(place)
         turns[chart], shifts[chart] = place.shape.turn, place.shape.shift + place.at
+        if scale <= beyond * grid.reach:
+            return _Layout(turns, shifts, scale, grid.reach)
     for box in sorted(crumbs, reverse=True):
         found = grid.fill(box, len(crumbs[box]))
         if len(found) < len(crumbs[box]):

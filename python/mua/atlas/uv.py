@@ -1,5 +1,6 @@
 """One texture space for all materials of a character: artists' charts, scaled by what is seen of them, or cut anew."""
 
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
@@ -63,10 +64,13 @@ def build_atlas(surfaces: Surfaces, *, uv: UvMode, size: int, detail: Detail | N
         notes = (f"The UV layout was kept although {trouble}.",) if trouble else ()
         layout = _Layout(layout.corners, layout.as_is, notes)
     else:
-        wound = overlapping(source.corners, source.charts)[source.charts] > LOSS_ALLOWED
-        anew = wound | source.starved if uv == "auto" else np.ones(len(source.charts), bool)
-        anew[~anew] = distorted(source.corners[~anew], source.positions[~anew], source.charts[~anew])
-        layout = _lay_out(source, anew, detail or {})
+        with ThreadPoolExecutor(1) as pool:  # beside what decides which charts are kept
+            parts = _parts(source.surfaces)
+            wanted = pool.submit(wanted_fineness, source.surfaces, source.corners, parts=parts, chosen=detail or {})
+            wound = overlapping(source.corners, source.charts)[source.charts] > LOSS_ALLOWED
+            anew = wound | source.starved if uv == "auto" else np.ones(len(source.charts), bool)
+            anew[~anew] = distorted(source.corners[~anew], source.positions[~anew], source.charts[~anew])
+            layout = _lay_out(source, anew, detail or {}, parts=parts, wanted=wanted)
     return _character(source, layout, size)
 
 
@@ -121,6 +125,9 @@ def _lay_out(
     source: _Source,
     anew: Array,  # [F] bool, faces whose UVs are of no use
     detail: Detail,
+    *,
+    parts: Array,  # [F] into BODY_PARTS
+    wanted: Future[Array],  # of wanted_fineness
 ) -> _Layout:
     """Keep the other faces' charts, cut these anew, and pack all of them at the scale of the surface and its detail."""
     surfaces = source.surfaces
@@ -130,16 +137,19 @@ def _lay_out(
         rows = np.column_stack([surfaces.faces[anew].ravel(), corners[anew].reshape(-1, 2)])
         nodes[anew] = nodes.max() + 1 + _numbered(rows)
         charts[anew] = charts.max() + 1 + find_charts(nodes[anew], corners[anew])
-    parts = body_parts(
-        surfaces.skeleton, surfaces.faces, surfaces.skin_indices, surfaces.skin_weights, stated=surfaces.roles
-    )
     surface = areas(source.positions)
     finer, absent = factors(parts, surface, detail)
     cut, kept = len(np.unique(charts[anew])), len(np.unique(charts[~anew]))
     charts, finer = split_by_factor(nodes, corners, charts=charts, surface=surface, finer=finer)
-    finer *= wanted_fineness(surfaces, source.corners, parts=parts, chosen=detail)
+    finer *= wanted.result()
     flat = redrawn(even(corners, source.positions, charts), charts, finer)
     return _Layout(pack(flat, charts), as_is=False, notes=(_note(anew, kept=kept, cut=cut), *absent))
+
+
+def _parts(surfaces: Surfaces) -> Array:
+    """The part of the body [F] of each face."""
+    skin = surfaces.skin_indices, surfaces.skin_weights
+    return body_parts(surfaces.skeleton, surfaces.faces, *skin, stated=surfaces.roles)
 
 
 def _note(

@@ -1,7 +1,7 @@
 """A look at a character and its motion before a bake: what the splats keep of the one and the clips of the other."""
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -10,7 +10,6 @@ import numpy as np
 from PIL import Image
 from threadpoolctl import threadpool_limits
 
-from mua.arrays import Array
 from mua.baking.listener import Listener
 from mua.baking.settings import BakeSettings
 from mua.baking.sources import clips_of, faced, load_baked_character
@@ -18,7 +17,7 @@ from mua.characters.expression_file import write_expression_names
 from mua.characters.messages import LOOKS_WRONG, is_about
 from mua.errors import InputError
 from mua.fidelity import report
-from mua.fidelity.compare import Fidelity, compare
+from mua.fidelity.compare import Fidelity, compare, sittings_of
 from mua.fidelity.face_sheet import face_sheet
 from mua.fidelity.sheet import fidelity_sheet
 from mua.fidelity.source_process import SourceProcess
@@ -60,7 +59,7 @@ def check(settings: BakeSettings, listener: Listener) -> Check:
     listener.stage("character")
     with threadpool_limits(1, user_api="blas"), SourceProcess() as process:  # as in a bake
         character = load_baked_character(settings, read=process.begin)
-        return _check(settings, character, listener, faces=process.images)
+        return _check(settings, character, listener, process=process)
 
 
 def _check(
@@ -68,7 +67,7 @@ def _check(
     character: Character,
     listener: Listener,
     *,
-    faces: Callable[[], Sequence[Array] | None],  # as `compare` takes them
+    process: SourceProcess,
 ) -> Check:
     listener.stage("motion")
     loaded = _loaded(settings, character)
@@ -76,7 +75,7 @@ def _check(
     listener.stage("comparison with source")
     clips, made = _clips(settings, character, loaded)
     clips, of_face = faced(character, clips, settings.face)
-    fidelity, warnings = fidelity_of(character, clips, texels=settings.student.texels, faces=faces)
+    fidelity, warnings = fidelity_of(character, clips, texels=settings.student.texels, process=process)
     pairs, unmatched = _matched(character, loaded) if settings.motions else ((), ())
     doubtful = [note for note in character.notes if any(is_about(note, sentence) for sentence in LOOKS_WRONG)]
     noted = [note for note in character.notes if note not in doubtful]
@@ -115,17 +114,19 @@ def fidelity_of(
     *,
     texels: int,
     teacher: StillTeacher | None = None,
-    faces: Callable[[], Sequence[Array] | None] | None = None,  # as `compare` takes them
+    process: SourceProcess | None = None,
 ) -> tuple[Fidelity | None, tuple[str, ...]]:
     """How much the splats look like the character, and a sentence for what is poor; None where nothing is measured.
 
-    The splats are those of `teacher`, or as many as `texels` says. With `faces`, also in each of its expressions.
+    The splats are those of `teacher`, or as many as `texels` says. With a `process`, also in each of its expressions.
     """
     if character.source is None:
         return None, (WITHOUT_FILE,)
     try:
+        if process is not None:
+            process.draw_poses(sittings_of(character, clips, character.source))
         teacher = teacher or StillTeacher(character, texels=texels)
-        fidelity = compare(character, clips, teacher=teacher, source=character.source, faces=faces)
+        fidelity = compare(character, clips, teacher=teacher, source=character.source, process=process)
     except InputError as error:
         return None, (f"The splats were not compared with the source: {error}.",)
     return fidelity, report.sentences(fidelity)

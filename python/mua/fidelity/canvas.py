@@ -80,16 +80,26 @@ class Canvas:
 
     def __init__(self, context: moderngl.Context, screen: tuple[int, int], *, samples: int, dtype: str) -> None:
         """`samples` are along a side of every pixel; `dtype` is "f1" for eight bits a channel or "f4" for floats."""
-        self._screen, self._samples, self._dtype = screen, samples, dtype
+        self._context, self._screen, self._samples, self._dtype = context, screen, samples, dtype
         self.size = screen[0] * samples, screen[1] * samples
         self._color = context.renderbuffer(self.size, dtype=dtype)
         self._target = context.framebuffer([self._color], context.depth_renderbuffer(self.size))
 
-    def begin(self, area: Area | None = None) -> None:
-        """Draw here from now on, onto nothing; only in a part of the image where one is given."""
+    def begin(self, area: Area | None = None, onto: moderngl.Framebuffer | None = None) -> None:
+        """Draw here from now on, onto nothing or onto a copy; only in a part of the image where one is given."""
+        self._target.scissor = self._box(None)
+        if onto is not None:
+            self._context.copy_framebuffer(self._target, onto)
         self._target.use()
         self._target.scissor = self._box(area)
-        self._target.clear(0.0, 0.0, 0.0, 0.0, depth=1.0)
+        if onto is None:
+            self._target.clear(0.0, 0.0, 0.0, 0.0, depth=1.0)
+
+    def copy(self) -> moderngl.Framebuffer:
+        """The colours of what is drawn so far."""
+        copy = self._context.framebuffer([self._context.renderbuffer(self.size, dtype=self._dtype)])
+        self._context.copy_framebuffer(copy, self._target)
+        return copy
 
     def read(self, area: Area | None = None) -> Array:
         """The image or a part of it [H, W, 4] float32, each pixel the mean of its samples, its first row at the top."""

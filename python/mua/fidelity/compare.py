@@ -1,30 +1,31 @@
 """Draws the source character and its splats in the same poses and views, and compares the images."""
 
 import itertools
-from collections.abc import Callable, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import moderngl
 import numpy as np
 
 from mua.arrays import Array
-from mua.avatar.camera import Camera, orbit
+from mua.avatar.camera import Camera
 from mua.avatar.decode import pose_splats
 from mua.fidelity.canvas import opened
 from mua.fidelity.faces import FaceFidelity, compare_faces
 from mua.fidelity.measure import Agreement, Pair, agreement, together, worst_place
-from mua.fidelity.painter import Painter
-from mua.fidelity.source_pose import Moment, Poser, dominant_joints, skinned
+from mua.fidelity.posed_source import Moment, Poser, dominant_joints
+from mua.fidelity.source_faces import camera_of
+from mua.fidelity.source_poses import SCREEN, Sitting, source_poses
+from mua.fidelity.source_process import SourceProcess, continued
+from mua.fidelity.splat_faces import StillFace
 from mua.fidelity.splats import SplatPainter
 from mua.pose.clip import Clip
 from mua.rig.character import Character
-from mua.scene import Source
+from mua.scene import Scene, Source
 from mua.teachers.simulated.still import StillTeacher
 
-SCREEN = (384, 512)  # width, height, pixels
 NEAR_BY = 6.0  # pixels about a place within which the nearest surface names the joint
 POSED = 3  # frames of the clips beside the pose of the file
-ABOVE = float(np.radians(5))
 ROUND = {"front": 0.0, "left": 90.0, "back": 180.0, "front, right": -40.0}  # degrees round the figure
 IN_MOTION = ("front, right", -40.0), ("back, left", 140.0)  # one side for each frame, in turn
 
@@ -83,23 +84,33 @@ def compare(
     *,
     teacher: StillTeacher,
     source: Source,
-    faces: Callable[[], Sequence[Array] | None] | None = None,
+    process: SourceProcess | None = None,
 ) -> Fidelity:
     """Draw a character's source and its still `teacher`'s splats, as the file stands and in frames spread over `clips`.
 
-    With `faces`, also close up in each of the character's expressions; it returns the source's images of them (of
-    `source_faces`), or None where they are to be drawn here.
+    With a `process`, which draws part of that, also close up in each of the character's expressions.
     Raises InputError where this machine has no OpenGL.
     """
+    sittings = sittings_of(character, clips, source)
+    rest = sittings[0].moment
+    face = face_of(teacher, source.scene, rest) if process else None
+    if process and face:
+        process.draw_faces_of(face)
+    with opened() as context:
+        here = source_poses(context, source.scene, sittings)
+        studio = _Studio(context, source, continued(process.poses(), here) if process else here)
+        poses = tuple(studio.pictured(teacher, sitting) for sitting in sittings)
+        if process is None or face is None:
+            return Fidelity(poses)
+        return Fidelity(poses, compare_faces(context, face, scene=source.scene, rest=rest, process=process))
+
+
+def sittings_of(character: Character, clips: Sequence[Clip], source: Source) -> list[Sitting]:
+    """The poses that a character is drawn in: as the file stands, and in frames spread over `clips`."""
     poser = Poser(source, character.skeleton)
     moments = [poser.rest(), *(poser.of_clip(clip, frame) for clip, frame in spread(clips, POSED))]
-    with opened() as context:
-        studio = _Studio(context, source, poser)
-        views = [ROUND, *({side: degrees} for side, degrees in itertools.islice(itertools.cycle(IN_MOTION), POSED))]
-        poses = tuple(studio.pictured(teacher, m, v) for m, v in zip(moments, views, strict=False))
-        if faces is None:
-            return Fidelity(poses)
-        return Fidelity(poses, compare_faces(context, teacher, source=source, rest=moments[0], drawn=faces()))
+    views = [ROUND, *({side: degrees} for side, degrees in itertools.islice(itertools.cycle(IN_MOTION), POSED))]
+    return [Sitting(*sitting) for sitting in zip(moments, views, strict=False)]
 
 
 def spread(clips: Sequence[Clip], count: int) -> list[tuple[Clip, int]]:
@@ -109,28 +120,36 @@ def spread(clips: Sequence[Clip], count: int) -> list[tuple[Clip, int]]:
     return [frames[int((i + 0.5) * len(frames) / count)] for i in range(count)]
 
 
-class _Studio:
-    """The painters of the source and of the splats."""
+def face_of(teacher: StillTeacher, scene: Scene, rest: Moment) -> StillFace | None:
+    """The splats of the pose at rest and the camera that looks at their face; None where there are no expressions."""
+    expressions = teacher.rig.expressions
+    if expressions is None:
+        return None
+    still = teacher.frame(rest.pose)
+    return StillFace(teacher.rig, still.mesh, still.texture, rest.pose, camera_of(scene, rest), expressions)
 
-    def __init__(self, context: moderngl.Context, source: Source, poser: Poser) -> None:
-        self._scene, self._poser = source.scene, poser
-        self._paint_source = Painter(context, source.scene.parts, source.scene.materials, screen=SCREEN)
+
+class _Studio:
+    """The images of the source and the painter of the splats."""
+
+    def __init__(
+        self,
+        context: moderngl.Context,
+        source: Source,
+        images: Iterator[Array],  # as of `source_poses`
+    ) -> None:
+        self._scene, self._images = source.scene, images
         self._paint_splats = SplatPainter(context, SCREEN)
         self._dominant_joints = np.concatenate([dominant_joints(source.scene, part) for part in source.scene.parts])
 
-    def pictured(self, teacher: StillTeacher, moment: Moment, views: dict[str, float]) -> PoseFidelity:
-        """One pose, drawn from all `views`."""
-        places = [skinned(self._scene, part, moment.nodes) for part in self._scene.parts]
-        used = [at[np.unique(part.faces)] for at, part in zip(places, self._scene.parts, strict=True)]
-        points = np.concatenate(used)
-        bounds = np.stack([points.min(axis=0), points.max(axis=0)])
+    def pictured(self, teacher: StillTeacher, sitting: Sitting) -> PoseFidelity:
+        """One pose from all its sides."""
+        moment, places = sitting.moment, sitting.places(self._scene)
         textured = teacher.frame(moment.pose, moment.stretches)
         frame = pose_splats(teacher.rig, textured.mesh, texture=textured.texture, pose=moment.pose)
         shots = []
-        for view, degrees in views.items():
-            azimuth = moment.yaw + float(np.radians(degrees))
-            camera = orbit(bounds, screen=SCREEN, azimuth=azimuth, elevation=ABOVE)
-            source, splats = self._paint_source(places, camera), self._paint_splats(frame, camera)
+        for view, camera in zip(sitting.views, sitting.cameras(self._scene, places), strict=True):
+            splats, source = self._paint_splats(frame, camera), next(self._images)
             column, row, difference = worst_place(source, splats)
             joint = self._joint_at(np.concatenate(places), camera, (column, row))
             shots.append(Shot(source, splats, agreement(source, splats), view, (column, row), joint, difference))

@@ -15,9 +15,8 @@ COLUMNS = 2  # expressions beside each other
 
 def face_sheet(face: FaceFidelity) -> Image.Image:
     """Three cells for the face at rest and for every expression, in the order of the file."""
-    shots = (face.rest, *face.expressions)
-    background = background_for(shot.source for shot in shots)
-    return sheet([_strip(shot, background) for shot in shots], COLUMNS)
+    background = background_for([face.rest.source])
+    return sheet([_strip(shot, background) for shot in (face.rest, *face.expressions)], COLUMNS)
 
 
 def _strip(shot: ExpressionShot, background: float) -> Array:

@@ -18,7 +18,7 @@ from mua.channels import SH_C0
 from mua.fidelity.canvas import opened
 from mua.fidelity.compare import spread
 from mua.fidelity.painter import Painter
-from mua.fidelity.source_pose import Moment, Poser, skinned
+from mua.fidelity.posed_source import Moment, Poser, skinned
 from mua.fidelity.texel_adam import TexelAdam
 from mua.pose.clip import Clip
 from mua.rig.character import Character

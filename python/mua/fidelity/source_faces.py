@@ -3,8 +3,9 @@
 It loads little, because a process of its own draws these images.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 import moderngl
 import numpy as np
@@ -13,7 +14,7 @@ from mua.arrays import Array
 from mua.avatar.camera import Camera, orbit
 from mua.fidelity.canvas import Area
 from mua.fidelity.painter import Painter
-from mua.fidelity.source_pose import Moment, skinned
+from mua.fidelity.posed_source import Moment, skinned
 from mua.scene import Part, Scene
 
 SCREEN = (288, 288)  # width, height, pixels
@@ -22,10 +23,23 @@ USUAL = 97  # percent of the vertices that are moved: a hat that one expression 
 AWAY = float(np.radians(15))  # of the view from the front, so that depth shows
 
 
-def source_faces(context: moderngl.Context, scene: Scene, rest: Moment, names: Sequence[str]) -> Iterator[Array]:
-    """Images [H, W, 4] of the file's own meshes at rest and in each expression alone."""
+class Patch(NamedTuple):
+    """A part of an image."""
+
+    area: Area
+    image: Array  # [h, w, 4]
+
+    def laid_over(self, image: Array) -> Array:
+        """An image [H, W, 4] with this part of it."""
+        whole = image.copy()
+        self.area.of(whole)[:] = self.image
+        return whole
+
+
+def source_faces(context: moderngl.Context, scene: Scene, rest: Moment, names: Sequence[str]) -> Iterator[Patch]:
+    """The image of the file's own meshes at rest, and what is other in that of each expression alone."""
     of_source = _Source(context, scene, rest, camera_of(scene, rest))
-    yield of_source.at_rest
+    yield Patch(Area(0, 0, *SCREEN), of_source.at_rest)
     yield from map(of_source.expressed, names)
 
 
@@ -39,8 +53,8 @@ class _Source:
         self._paint.near_first(self._places, camera)
         self.at_rest = self._paint(self._places, camera)
 
-    def expressed(self, name: str) -> Array:
-        """The image [H, W, 4] in one expression."""
+    def expressed(self, name: str) -> Patch:
+        """What is other in one expression."""
         places, moved = list(self._places), [np.empty((0, 3))]
         for index, part in enumerate(self._scene.parts):
             if vertices := [target.vertices for target in part.targets if target.name == name]:
@@ -48,16 +62,7 @@ class _Source:
                 corners = np.unique(part.faces[np.isin(part.faces, np.concatenate(vertices)).any(axis=1)])
                 moved += [at[index][corners] for at in (self._places, places)]
         area = Area.of_points(np.concatenate(moved), self._camera)
-        return patched(self.at_rest, area, lambda: self._paint(places, self._camera, area))
-
-
-def patched(image: Array, area: Area, drawn: Callable[[], Array]) -> Array:
-    """The image with a part of it drawn anew."""
-    if area.empty:
-        return image
-    patched = image.copy()
-    area.of(patched)[:] = drawn()
-    return patched
+        return Patch(area, area.of(self.at_rest) if area.empty else self._paint(places, self._camera, area))
 
 
 def _with_target(part: Part, name: str) -> Part:

@@ -1,27 +1,33 @@
-"""Draws the faces of a character's file in a process beside this one, while the character's splats are made.
+"""Draws a character's file in a process beside this one, while its splats are made, and then the faces of the splats.
 
 The process is this module as a program: it reads a source, a skeleton and the names of expressions from standard input
-and writes images to standard output. It is a process because OpenGL holds Python's lock while it draws.
+and writes images to standard output, then poses and writes theirs, then a still face. It is a process because OpenGL
+holds Python's lock while it draws.
 """
 
+import itertools
 import os
 import pickle
 import subprocess
 import sys
-from concurrent.futures import Future, ThreadPoolExecutor
+from collections.abc import Iterable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
-from typing import Self
+from queue import SimpleQueue
+from typing import IO, Any, Self, TypeVar
 
 from mua.arrays import Array
 from mua.atlas.character_surfaces import Surfaces
 from mua.errors import InputError
 from mua.fidelity.canvas import opened
-from mua.fidelity.source_faces import source_faces
-from mua.fidelity.source_pose import Poser
-from mua.pose.skeleton import Skeleton
-from mua.scene import Source
+from mua.fidelity.posed_source import Poser
+from mua.fidelity.source_faces import Patch, source_faces
+from mua.fidelity.source_poses import Sitting, source_poses
+from mua.fidelity.splat_faces import StillFace, splat_faces
 
-FEWEST = 16  # expressions: fewer are drawn sooner than a process starts
+FEW = 16  # expressions: fewer, of fewer triangles than these, are drawn sooner than a process starts
+SMALL = 10_000
+T = TypeVar("T")
 
 
 class SourceProcess:
@@ -29,15 +35,18 @@ class SourceProcess:
 
     def __init__(self) -> None:
         self._process: subprocess.Popen[bytes] | None = None
-        self._images: Future[list[Array] | None] | None = None
+        self._thread = ThreadPoolExecutor(1)  # one question after the other
+        self._faces: Iterator[Patch] = iter(())
+        self._poses: Iterator[Array] = iter(())
+        self._splat_faces: Iterator[Patch] = iter(())
 
     def __enter__(self) -> Self:
         return self
 
     def begin(self, surfaces: Surfaces) -> None:
-        """Draw the faces of a character with so many expressions that they are worth a process."""
-        source, expressions = surfaces.source, surfaces.expressions
-        if source is None or expressions is None or len(expressions) < FEWEST:
+        """Draw the faces of a character that has so much to draw that it is worth a process."""
+        source, names = surfaces.source, () if surfaces.expressions is None else surfaces.expressions.names
+        if source is None or (len(names) < FEW and len(surfaces.faces) < SMALL):
             return
         command = [sys.executable, "-m", "mua.fidelity.source_process"]
         pipe = subprocess.PIPE
@@ -45,44 +54,95 @@ class SourceProcess:
             self._process = subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=subprocess.DEVNULL)
         except OSError:  # no room for it: the faces are then drawn here
             return
-        pool = ThreadPoolExecutor(1)
-        self._images = pool.submit(_heard, self._process, (source, surfaces.skeleton, expressions.names))
-        pool.shutdown(wait=False)
+        self._faces = self._answers((source, surfaces.skeleton, names), 1 + len(names) if names else 0)
 
-    def images(self) -> list[Array] | None:
-        """Images [H, W, 4] as of `source_faces`; None where no process has drawn them."""
-        return None if self._images is None else self._images.result()
+    def draw_poses(self, sittings: Sequence[Sitting]) -> None:
+        """Draw the source in some poses as well, where there is a process."""
+        if self._process is not None:
+            self._poses = self._answers(sittings, sum(len(sitting.views) for sitting in sittings))
+
+    def draw_faces_of(self, face: StillFace) -> None:
+        """Draw the faces of the splats as well, where there is a process; after poses."""
+        if self._process is not None:
+            self._splat_faces = self._answers(face, 1 + len(face.expressions))
+
+    def faces(self) -> Iterator[Patch]:
+        """As of `source_faces`, as soon as they are drawn; none or not all where no process draws them."""
+        return self._faces
+
+    def poses(self) -> Iterator[Array]:
+        """As of `source_poses`, likewise."""
+        return self._poses
+
+    def splat_faces(self) -> Iterator[Patch]:
+        """As of `splat_faces`, likewise."""
+        return self._splat_faces
+
+    def _answers(self, job: object, count: int) -> Iterator[Any]:
+        assert self._process is not None
+        answers: SimpleQueue[Any] = SimpleQueue()
+        self._thread.submit(_hear, self._process, job, count, answers)
+        return _as_they_come(answers)
 
     def __exit__(self, *_: object) -> None:
         if self._process is not None:
             self._process.kill()
             self._process.wait()
+        self._thread.shutdown()
+        if self._process is not None:
             for pipe in (self._process.stdin, self._process.stdout):
                 with suppress(OSError):  # for what it has not read
                     if pipe is not None:
                         pipe.close()
 
 
-def _heard(process: "subprocess.Popen[bytes]", job: tuple[Source, Skeleton, tuple[str, ...]]) -> list[Array] | None:
-    """What a process draws; None where it ends before that."""
+def continued(drawn: Iterable[T], here: Iterator[T]) -> Iterator[T]:
+    """What a process has drawn, and from where it stopped on what is drawn here."""
+    count = 0
+    for patch in drawn:
+        count += 1
+        yield patch
+    yield from itertools.islice(here, count, None)
+
+
+def _hear(
+    process: "subprocess.Popen[bytes]",
+    job: object,
+    count: int,
+    answers: "SimpleQueue[Any]",  # what the process draws; None after the last, or where it ends before
+) -> None:
     assert process.stdin is not None
     assert process.stdout is not None
-    try:
+    with suppress(EOFError, OSError, pickle.UnpicklingError):
         pickle.dump(job, process.stdin)
         process.stdin.flush()
-        return [pickle.load(process.stdout) for _ in (0, *job[2])]
-    except (EOFError, OSError, pickle.UnpicklingError):
-        return None
+        for _ in range(count):
+            answers.put(pickle.load(process.stdout))
+    answers.put(None)
+
+
+def _as_they_come(answers: "SimpleQueue[Any]") -> Iterator[Any]:
+    while (answer := answers.get()) is not None:
+        yield answer
+
+
+def _answer(images: Iterable[object], answers: IO[bytes]) -> None:
+    for image in images:
+        pickle.dump(image, answers)
+    answers.flush()
 
 
 def main() -> None:
     """Draw what standard input asks for; nothing where this machine has no OpenGL."""
-    source, skeleton, names = pickle.load(sys.stdin.buffer)
+    questions = sys.stdin.buffer
+    source, skeleton, names = pickle.load(questions)
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # output of drivers must not come between the images
-    with suppress(InputError), opened() as context, answers:
-        for image in source_faces(context, source.scene, Poser(source, skeleton).rest(), names):
-            pickle.dump(image, answers)
+    with suppress(InputError, EOFError), opened() as context, answers:
+        if names:
+            _answer(source_faces(context, source.scene, Poser(source, skeleton).rest(), names), answers)
+        _answer(source_poses(context, source.scene, pickle.load(questions)), answers)
+        _answer(splat_faces(context, pickle.load(questions)), answers)
 
 
 if __name__ == "__main__":

@@ -1,6 +1,7 @@
 """Draws splats by OpenGL: the formula of kernels/splat_draw, many times as fast as its reference on the CPU."""
 
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import moderngl
 import numpy as np
@@ -13,6 +14,8 @@ from mua.fidelity.canvas import LAID_OVER, Area, Canvas, draw, set_uniform
 from mua.kernels.splat_draw import WEIGHT, splat_colors
 from mua.kernels.splat_project import REACH, half_extents, wide_deviations
 
+BEYOND = 1 << 16  # all keys
+SHARES = np.arange(1, 9) / 9  # of the quads, that layers have
 SAMPLES = 2  # samples along a side of a pixel; thin splats in one pixel then cover different parts of it
 
 VERTEX = """
@@ -71,7 +74,24 @@ class Quads:
     def among(self, some: Array) -> "Quads":
         """What is seen of some of the splats."""
         held = np.isin(self.splats, some)
+        return self._where(held)
+
+    def between(self, first: int, end: int = BEYOND) -> "Quads":
+        """Those whose keys are at least `first` and less than `end`."""
+        return self._where((self.keys >= first) & (self.keys < end))
+
+    def _where(self, held: Array) -> "Quads":
         return Quads(self.splats[held], self.keys[held], self.rows[held])
+
+
+class Layer(NamedTuple):
+    """An image of what lies behind a depth, to draw the rest onto."""
+
+    key: int  # of the first quad that is not in it
+    image: moderngl.Framebuffer | None  # None: nothing
+
+
+NOTHING = Layer(0, None)
 
 
 class SplatPainter:
@@ -95,15 +115,28 @@ class SplatPainter:
         colors = splat_colors(frame.centres[splats], frame.texel_dq[splats], sh, camera.position)
         return Quads(splats, keys, np.concatenate([ellipses, wide, colors, opacities], axis=1))
 
-    def drawn(self, quads: Quads, area: Area | None = None) -> Array:
-        """The image [H, W, 4] of some quads, or a part of it."""
+    def drawn(self, quads: Quads, area: Area | None = None, behind: Layer = NOTHING) -> Array:
+        """The image [H, W, 4] of some quads, or a part of it; a layer has those `behind` its key already."""
+        self._canvas.begin(area, behind.image)
+        self._lay(quads.between(behind.key))
+        return self._canvas.read(area)
+
+    def layers(self, quads: Quads) -> list[Layer]:
+        """Layers of some quads, from back to front, that have about as many of them more each."""
+        self._canvas.begin()
+        layers = [NOTHING]
+        for key in np.unique(np.quantile(quads.keys, SHARES, method="lower")).tolist():
+            self._lay(quads.between(layers[-1].key, key))
+            layers.append(Layer(key, self._canvas.copy()))
+        return layers
+
+    def _lay(self, quads: Quads) -> None:
+        """Draw quads over what is there."""
         rows = quads.rows[np.argsort(quads.keys, kind="stable")]
-        self._canvas.begin(area)
         self._context.enable_only(moderngl.BLEND)
         self._context.blend_func = LAID_OVER
         names = ("ellipse", "lengths", "shade")
         draw(self._program, rows, "4f 4f 4f/i", names, mode=moderngl.TRIANGLE_STRIP, vertices=4, instances=len(rows))
-        return self._canvas.read(area)
 
     def area(self, *quads: Quads) -> Area:
         """The part of the image that quads cover."""

@@ -88,7 +88,7 @@ def showing_instead(
         points = np.einsum("nk,nkc->nc", barycentrics[hidden[asked]], places[corners[hidden[asked]]])
         away = rng.standard_normal((DIRECTIONS, 3))
         away /= np.linalg.norm(away, axis=1, keepdims=True)
-        asked[asked] = covers.seen(points, places, away=away, lift=lift, face=reached is not None)
+        asked[asked] = covers.seen(points, places, away=away, lift=lift)
         hidden = hidden[~asked]
     shown, own = np.arange(len(corners)), np.ones(len(corners), bool)
     own[hidden] = False
@@ -138,22 +138,17 @@ class _Covers:
         cut: Array,  # [F] bool: faces with texels that something shows through
     ) -> None:
         mesh = character.mesh
-        self._solid, self._cut = mesh.faces[~cut], mesh.faces[cut]
+        self._cut = mesh.faces[cut]
         self._uv = wp.array(mesh.uv[mesh.uv_faces[cut]].reshape(-1, 2), dtype=wp.vec2, device=DEVICE)
         self._shown = wp.array(character.base_color[..., 3] >= SOLID * 255, dtype=bool, device=DEVICE)
-        self._tree: Tree | None = None
+        self._tree = Tree(mesh.vertices, mesh.faces[~cut])  # what moves needs no other order of triangles
 
-    def seen(self, points: Array, vertices: Array, *, away: Array, lift: float, face: bool) -> Array:
-        """Which points [n] are not covered from all sides while the surface is at `vertices` [V, 3].
-
-        With `face`, these are the bind pose but for an expression.
-        """
+    def seen(self, points: Array, vertices: Array, *, away: Array, lift: float) -> Array:
+        """Which points [n] are not covered from all sides while the surface is at `vertices` [V, 3]."""
         if not len(points):
             return np.empty(0, bool)
-        tree = self._tree if face and self._tree else Tree(vertices, self._solid)
-        self._tree = tree if face else None  # what an expression moves needs no other order of triangles
         cut = _mesh(vertices, self._cut)
-        surface = [tree.at(vertices), cut.id, self._uv, self._shown]
+        surface = [self._tree.at(vertices), cut.id, self._uv, self._shown]
         directions = wp.array(away, dtype=wp.vec3, device=DEVICE)
 
         def looked(some: Array) -> Array:

@@ -102,14 +102,15 @@ class Tree:
         """Take vertices [V, 3] and faces [F, 3]."""
         some = faces if len(faces) else np.zeros((1, 3), int)  # a point, which no ray meets
         along = some[np.argsort(_places(vertices[some].mean(axis=1)), kind="stable")]
-        self._corners = np.pad(along, ((0, -len(along) % LANES**2), (0, 0)), mode="edge").T
+        self._corners = np.pad(along, ((0, -len(along) % LANES**2), (0, 0)), mode="edge").T.reshape(3, -1, LANES)
+        self._places = np.full(vertices.shape, np.nan, np.float32)
+        self._leaves = np.empty((self._corners.shape[1], 9, LANES), np.float32)
+        self._bounds = np.empty((len(self._leaves), 6), np.float32)
 
     def at(self, vertices: Array) -> Any:
         """The `Boxes` of the surface at `vertices` [V, 3], for `meets`."""
-        a, b, c = (vertices.astype(np.float32)[corners] for corners in self._corners)
-        leaves = np.concatenate([a, b - a, c - a], axis=1).reshape(-1, LANES, 9).swapaxes(1, 2)
-        low, high = np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
-        bounds = _around(np.concatenate([low, -high], axis=1))
+        self._move(vertices.astype(np.float32))
+        bounds = self._bounds
         boxes: list[Array] = []
         children: list[Array] = []
         below = 0  # the first node of the level below
@@ -123,8 +124,18 @@ class Tree:
         tree.bottom = len(boxes[0])
         tree.children = wp.array(np.concatenate(children, dtype=np.int32), device=DEVICE)
         tree.boxes = wp.array(np.concatenate(boxes).ravel(), device=DEVICE)
-        tree.leaves = wp.array(leaves.ravel(), device=DEVICE)
+        tree.leaves = wp.array(self._leaves.ravel(), device=DEVICE)
         return tree
+
+    def _move(self, places: Array) -> None:
+        """Bring the leaves to places [V, 3], those alone of which a corner has moved since the last time."""
+        moved = (places != self._places).any(axis=1)
+        some = np.flatnonzero(moved[self._corners].any(axis=(0, 2)))
+        a, b, c = places[self._corners[:, some]]  # [n, LANES, 3]
+        self._leaves[some] = np.concatenate([a, b - a, c - a], axis=2).swapaxes(1, 2)
+        low, high = np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
+        self._bounds[some] = _around(np.concatenate([low, -high], axis=2).reshape(-1, 6))
+        self._places = places
 
 
 def _around(bounds: Array) -> Array:

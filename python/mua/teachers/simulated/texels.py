@@ -48,7 +48,8 @@ class SurfaceTexels:
         wanted = sharpness(picture)
         uv = np.einsum("nk,nkc->nc", barycentrics, mesh.uv[mesh.uv_faces[triangles]])
         albedo = sample_albedo(character.base_color, uv, texels.size)
-        with ThreadPoolExecutor(1) as pool:
+        with ThreadPoolExecutor(2) as pool:
+            sharp = pool.submit(_sharp, picture, wanted)
             shown = pool.submit(showing_instead, character, corners, barycentrics, solid=albedo[:, 3] >= SOLID)
             surfels = rest_surfels(
                 mesh,
@@ -63,7 +64,7 @@ class SurfaceTexels:
         below = depths(self._dense @ mesh.vertices, normals=surfels.normals, deviations=deviations.min(axis=1))
         relief -= below[:, None] * surfels.normals
         at_home = _at_home(uv, texels) & ~surfels.at_border  # beyond it lies the image of another chart
-        albedo[at_home, :3] = _sharp(picture, wanted)[texels.texels[at_home]]
+        albedo[at_home, :3] = sharp.result()[texels.texels[at_home]]
         albedo[:, :3] = albedo[shown.result(), :3]
         self._relief, self._rest, self._log_scales, self._albedo = (
             np.ascontiguousarray(rows.T, dtype=np.float32)

@@ -1,0 +1,71 @@
+"""Each expression of a character as an avatar shows it: a close look at the face.
+
+It loads little, because a process of its own draws these images.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import moderngl
+import numpy as np
+
+from mua.arrays import Array
+from mua.avatar.camera import Camera
+from mua.avatar.decode import express, pose_splats
+from mua.fidelity.canvas import Area
+from mua.fidelity.source_faces import SCREEN, Patch
+from mua.fidelity.splats import BEYOND, SplatPainter
+from mua.kernels.expressions import reach_of
+from mua.pose.skeleton import Pose
+from mua.rig.expressions import Expressions
+from mua.rig.rig import Rig
+
+
+@dataclass(frozen=True, eq=False)
+class StillFace:
+    """The splats of a character as the file stands, its expressions, and the camera that looks at what these move."""
+
+    rig: Rig
+    mesh: Array  # [V, 3]
+    texture: Array  # [N, 23]
+    pose: Pose
+    camera: Camera
+    expressions: Expressions
+
+
+def splat_faces(context: moderngl.Context, face: StillFace) -> Iterator[Patch]:
+    """The image of the splats at rest, and what is other in that of each expression alone."""
+    of_splats = _Splats(context, face)
+    yield Patch(Area(0, 0, *SCREEN), of_splats.at_rest)
+    yield from map(of_splats.expressed, range(len(face.expressions)))
+
+
+class _Splats:
+    """Draws the splats of the pose at rest, bent as an avatar bends them; only those that an expression moves anew."""
+
+    def __init__(self, context: moderngl.Context, face: StillFace) -> None:
+        self._face = face
+        self._paint = SplatPainter(context, SCREEN)
+        self._posed = pose_splats(face.rig, face.mesh, texture=face.texture, pose=face.pose)
+        self._quads = self._paint.quads(self._posed, face.camera)
+        self._layers = self._paint.layers(self._quads)
+        self.at_rest = self._paint.drawn(self._quads)
+
+    def expressed(self, number: int) -> Patch:
+        """What is other in one expression."""
+        face, texels = self._face, self._face.rig.texels
+        weights = np.zeros(len(face.expressions), np.float32)
+        weights[number] = 1
+        moves = reach_of(face.expressions.moved(weights), face.rig.mesh.faces, texels.triangles)
+        some = np.flatnonzero(moves.texels)
+        rig = replace(face.rig, texels=texels.some(some))
+        mesh, texture = express(rig, face.mesh, texture=face.texture[some], weights=weights)
+        posed = replace(pose_splats(rig, mesh, texture=texture, pose=face.pose), bounds=self._posed.bounds)
+        moved = self._paint.quads(posed, face.camera)
+        before = self._quads.among(some)
+        area = self._paint.area(before, moved)
+        if area.empty:
+            return Patch(area, area.of(self.at_rest))
+        farthest = min(quads.keys.min(initial=BEYOND - 1) for quads in (before, moved))
+        behind = next(layer for layer in reversed(self._layers) if layer.key <= farthest)
+        return Patch(area, self._paint.drawn(self._quads.exchanged(some, moved), area, behind))
