@@ -109,7 +109,7 @@ def run(
         late = ran[arguments] = Late()
 
         def compared(
-            character: Character, clips: list[Clip], *, texels: int, teacher: object = None, faces: object = None
+            character: Character, clips: list[Clip], *, texels: int, teacher: object = None, process: object = None
         ) -> tuple[None, tuple[str, ...]]:
             late.character, late.clips, late.compared = character, tuple(clips), texels
             return None, ()
