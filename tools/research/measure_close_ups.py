@@ -12,7 +12,7 @@ whose figures follow those of the splats. Give --fit with it, the fit-*.npy of t
 PSNR is over all pixels that either of them covers, on grey, and over those within BORDER of an open border of the
 surface. FLIP is the mean over the same pixels, of which --per-degree lie along a degree of the eye. "Dark" is the
 share of pixels within FRINGE outside the source's silhouette that are darker than both the nearest pixel of the source
-and the background: a fringe. The bound, after "of", is the PSNR of the surface itself under its atlas averaged to so
+and the background: a fringe. The bounds, after "of", are those of the surface itself under its atlas averaged to so
 many texels. The splats are fitted to the source first, in poses of the built-in range of motion, as a bake fits them.
 With --before the splats that still_splats.py kept of another commit are drawn next to the source, and their figures
 come first.
@@ -303,9 +303,11 @@ def _line(name: str, figures: dict[str, Figures]) -> str:
     def each(field: str, form: str) -> str:
         return " -> ".join(format(getattr(one, field), form) for one in shown)
 
-    own = f"{name}: {each('psnr', '.2f')} dB of {figures['bound'].psnr:.2f} dB, at borders {each('border', '.2f')} dB"
-    seen = f", FLIP {each('flip', '.4f')}, at borders {each('border_flip', '.4f')}"
-    return own + seen + f", {each('dark', '.1%')} dark outside"
+    bound = figures["bound"]
+    own = f"{name}: {each('psnr', '.2f')} dB of {bound.psnr:.2f} dB, at borders {each('border', '.2f')} dB"
+    seen = f", FLIP {each('flip', '.4f')} of {bound.flip:.4f}"
+    at_borders = f", at borders {each('border_flip', '.4f')} of {bound.border_flip:.4f}"
+    return own + seen + at_borders + f", {each('dark', '.1%')} dark outside"
 
 
 if __name__ == "__main__":

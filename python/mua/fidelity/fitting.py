@@ -27,10 +27,11 @@ from mua.splatting.posing import TorchRig, blend_texels, blend_vertices, place_s
 from mua.splatting.projection import Eye
 from mua.splatting.rasterise import rasterise
 from mua.teachers.simulated.still import StillTeacher
-from mua.training.threads import while_next
+from mua.training.threads import in_order, while_next
 from mua.training.torch_threads import thread_share
 
 STEPS = 200  # each of one image
+AT_ONCE = 3  # images whose gradients are taken side by side: two cores then wait for nothing
 POSES = 6  # beside that of the file
 SIDE = 1.25  # pixels along an image for a texel along the texture: what is in it changes with both alike
 SAMPLES = 2  # along a side of a pixel of the source: as good as 3, and half as many
@@ -100,29 +101,37 @@ def _descend(
     rng: np.random.Generator,
     progress: Callable[[int], None],
 ) -> Array:
-    """Adam on the error of one image after another, each on a background of its own."""
+    """Adam on the errors of images, each on a background of its own."""
     count, threads = len(poses[0].texture), torch.get_num_threads()
     changes, adam, rates = torch.zeros(count, len(RATES)), TexelAdam(count, len(RATES)), torch.tensor(RATES)
     widths = poses[0].texture[:, 7:9].mean(dim=1, keepdim=True).exp()
+    each = max(threads // AT_ONCE, 1)
 
-    def views() -> Iterator[_View]:
-        for step in range(steps):
-            shown = poses[step % len(poses)]
-            camera, background = _camera(shown, widths, side=side, rng=rng), rng.uniform(size=3)
-            source, rate = torch.tensor(paint(shown.drawn, camera)), LAST_RATE ** (step / steps)
-            yield _View(shown, camera, source, torch.tensor(background).float(), rate)
+    def views() -> Iterator[list[_View]]:
+        for first in range(0, steps, AT_ONCE):
+            yield [view(step) for step in range(first, min(first + AT_ONCE, steps))]
 
-    def descend(view: _View) -> None:
+    def view(step: int) -> _View:
+        shown = poses[step % len(poses)]
+        camera, background = _camera(shown, widths, side=side, rng=rng), rng.uniform(size=3)
+        source, rate = torch.tensor(paint(shown.drawn, camera)), LAST_RATE ** (step / steps)
+        return _View(shown, camera, source, torch.tensor(background).float(), rate)
+
+    def gradient_of(view: _View) -> tuple[Tensor, Tensor]:
         texels = torch.from_numpy(in_view(view.shown.centres, view.camera))
         own = changes[texels].requires_grad_()
-        (gradient,) = torch.autograd.grad(_error(view, texels, own, _by(own, widths[texels]), threads=threads), own)
+        (gradient,) = torch.autograd.grad(_error(view, texels, own, _by(own, widths[texels]), threads=each), own)
         visible = gradient[:, :3].any(dim=1)  # the colour of the others has a gradient by PRIOR alone
-        seen = texels[visible]
-        changes[seen] -= view.rate * rates * adam(seen, gradient[visible])
+        return texels[visible], gradient[visible]
+
+    def descend(views: list[_View]) -> None:
+        found = list(in_order(gradient_of, views, threads=AT_ONCE))  # all of them before the first step
+        for view, (seen, gradient) in zip(views, found, strict=True):
+            changes[seen] -= view.rate * rates * adam(seen, gradient)
 
     with thread_share(threads):  # its operations are too small to be divided
         for done, _ in enumerate(while_next(descend, views()), start=1):
-            progress(done)
+            progress(min(AT_ONCE * done, steps))
     return np.asarray(_by(changes, widths).numpy())
 
 
