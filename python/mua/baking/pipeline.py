@@ -43,7 +43,7 @@ from mua.teachers.simulated.texels import SurfaceTexels
 from mua.training.memory import release_memory, return_large_blocks
 
 # Steps of the fit, and training frames for each further one: less than a tenth of the time of a bake.
-FEWEST_STEPS, FRAMES_OF_A_STEP = 140, 6
+FEWEST_STEPS, FRAMES_OF_A_STEP = 120, 6
 FRAMES = "frames 7"  # raised where the stand-in teacher or the fit changes what it makes of the same input
 FITTED = b"fitted"  # part of the key of a fit and of the recording that it corrects, which have one name
 
