@@ -16,11 +16,13 @@ from mua.fidelity.canvas import Area, opened
 from mua.fidelity.compare import face_of
 from mua.fidelity.face_sheet import face_sheet
 from mua.fidelity.faces import FaceFidelity, compare_faces
-from mua.fidelity.posed_source import Poser
+from mua.fidelity.posed_source import Moment, Poser
 from mua.fidelity.source_faces import Patch
 from mua.fidelity.source_process import SourceProcess
+from mua.fidelity.splat_faces import StillFace
 from mua.fidelity.splats import SplatPainter
 from mua.rig.character import Character
+from mua.scene import Source
 from mua.teachers.simulated.still import StillTeacher
 
 TEXELS = 192
@@ -33,12 +35,21 @@ def grinning_character(tmp_path: Path) -> Character:
 
 def drawn_here(character: Character, teacher: StillTeacher, process: SourceProcess | None = None) -> FaceFidelity:
     """The faces of the character as the file stands, drawn by this process but for what another has drawn."""
-    assert character.source is not None
-    rest = Poser(character.source, character.skeleton).rest()
-    face = face_of(teacher, character.source.scene, rest)
-    assert face is not None
+    face, (source, rest) = still_face(character, teacher), at_rest(character)
     with opened() as context:
-        return compare_faces(context, face, scene=character.source.scene, rest=rest, process=process or SourceProcess())
+        return compare_faces(context, face, scene=source.scene, rest=rest, process=process or SourceProcess())
+
+
+def still_face(character: Character, teacher: StillTeacher) -> StillFace:
+    source, rest = at_rest(character)
+    face = face_of(teacher, source.scene, rest)
+    assert face is not None
+    return face
+
+
+def at_rest(character: Character) -> tuple[Source, Moment]:
+    assert character.source is not None
+    return character.source, Poser(character.source, character.skeleton).rest()
 
 
 def test_expressions_look_like_the_files_own_targets(tmp_path: Path) -> None:
@@ -101,31 +112,25 @@ def test_what_a_process_leaves_is_drawn_here(tmp_path: Path) -> None:
 
 def test_splats_that_an_expression_moves_lie_among_the_others_as_if_all_were_drawn_anew(tmp_path: Path) -> None:
     character = grinning_character(tmp_path)
-    assert character.source is not None
     teacher = StillTeacher(character, texels=TEXELS)
-    rest = Poser(character.source, character.skeleton).rest()
-    still, camera = teacher.frame(rest.pose), source_faces.camera_of(character.source.scene, rest)
-    face = drawn_here(character, teacher)
+    still, drawn = still_face(character, teacher), drawn_here(character, teacher)
     with opened() as context:
-        for shot, weights in zip(face.expressions, np.eye(2, dtype=np.float32), strict=True):
-            mesh, texture = express(teacher.rig, still.mesh, texture=still.texture, weights=weights)
-            posed = pose_splats(teacher.rig, mesh, texture=texture, pose=rest.pose)
-            expected = SplatPainter(context, source_faces.SCREEN)(posed, camera)
+        for shot, weights in zip(drawn.expressions, np.eye(2, dtype=np.float32), strict=True):
+            mesh, texture = express(still.rig, still.mesh, texture=still.texture, weights=weights)
+            posed = pose_splats(still.rig, mesh, texture=texture, pose=still.pose)
+            expected = SplatPainter(context, source_faces.SCREEN)(posed, still.camera)
             assert np.quantile(np.abs(shot.splats - expected), 0.99) < ROUNDED
-            assert not np.allclose(shot.splats, face.rest.splats, atol=0.1)
+            assert not np.allclose(shot.splats, drawn.rest.splats, atol=0.1)
 
 
 def test_splats_over_a_layer_of_those_behind_them_are_the_picture_of_all(tmp_path: Path) -> None:
     character = grinning_character(tmp_path)
-    assert character.source is not None
-    teacher = StillTeacher(character, texels=TEXELS)
-    rest = Poser(character.source, character.skeleton).rest()
-    still, camera = teacher.frame(rest.pose), source_faces.camera_of(character.source.scene, rest)
-    posed = pose_splats(teacher.rig, still.mesh, texture=still.texture, pose=rest.pose)
+    still = still_face(character, StillTeacher(character, texels=TEXELS))
+    posed = pose_splats(still.rig, still.mesh, texture=still.texture, pose=still.pose)
     area = Area(100, 120, 180, 160)
     with opened() as context:
         paint = SplatPainter(context, source_faces.SCREEN)
-        quads = paint.quads(posed, camera)
+        quads = paint.quads(posed, still.camera)
         layers, whole = paint.layers(quads), paint.drawn(quads)
         assert len({layer.key for layer in layers}) == len(layers) > 4
         for layer in layers:
