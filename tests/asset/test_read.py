@@ -77,6 +77,14 @@ def test_a_cut_file_says_how_many_bytes_it_had(network: bytes, content: bytes, l
         )
 
 
+def test_a_cut_file_without_stages_is_not_asked_what_it_states(content: bytes) -> None:
+    root = int.from_bytes(content[:4], "little")
+    taken = root + 4 * int.from_bytes(content[root : root + 4], "little", signed=True)  # as if byte 0 were of a vector
+    spoilt = content[:taken] + b"\xff\xff\xff\x7f" + content[taken + 4 :]
+    with pytest.raises(FormatError, match=r"needs at least (\d{1,6}):"):
+        parse(spoilt[: len(content) // 2])
+
+
 def test_every_single_bit_flip_of_the_header_is_refused(content: bytes) -> None:
     for bit in range(8 * 160):
         flipped = bytearray(content)

@@ -171,7 +171,7 @@ def test_what_is_measured_of_a_motion_is_shown_with_its_unit(capsys: pytest.Capt
 
 def test_a_lost_texture_is_among_what_looks_wrong(tmp_path: Path) -> None:
     fbx, _, body = figure()
-    fbx.texture(fbx.material(body), "c:/work/Cloth_01.png")
+    fbx.texture(fbx.material(body), "c:/textures/Cloth_01.png")
     hero, figures = fbx.save(tmp_path / "hero.fbx"), tmp_path / "hero.json"
     text = run(hero, "--check", "--texels", 64, "-o", tmp_path / "hero.muaavatar", "--json", figures)
     found = json.loads(figures.read_text())

@@ -178,8 +178,8 @@ class _Parser:
     def table(self, table: str, at: int, path: str) -> Tree:
         """The table that the offset at byte `at` points to, as a dict."""
         positions = self._positions(table, self._follow(at, path), path)
-        if table == ROOT:
-            self.stated = self._last_word(positions.get("stages", 0))
+        if table == ROOT and "stages" in positions:
+            self.stated = self._last_word(positions["stages"])
         tree: Tree = {"_at": positions}
         for field in TABLES[table]:
             name = f"{path}.{field.name}".lstrip(".")

@@ -65,7 +65,7 @@ namespace Mua.Format
         private Table ReadTable(Layout layout, int at, string path)
         {
             int[] positions = FindFields(layout, Follow(at, path), path);
-            if (layout == Layouts.Root)
+            if (layout == Layouts.Root && positions[layout.Slot("stages")] != 0)
             {
                 stated = LastWord(positions[layout.Slot("stages")]);
             }

@@ -81,7 +81,7 @@ class Parser {
     const positions = this.positions(table, this.follow(at, path), path);
     if (table === ROOT) {
       this.crcAt = positions.crc32;
-      this.stated = this.lastWord(positions.stages ?? 0);
+      if (positions.stages) this.stated = this.lastWord(positions.stages);
     }
     /** @type {Tree} */
     const tree = {};
