@@ -44,7 +44,7 @@ class SourceProcess:
         return self
 
     def begin(self, surfaces: Surfaces) -> None:
-        """Draw the faces of a character that has so much to draw that it is worth a process."""
+        """Start the process, and with the faces, for a character that has so much to draw that it is worth one."""
         source, names = surfaces.source, () if surfaces.expressions is None else surfaces.expressions.names
         if source is None or (len(names) < FEW and len(surfaces.faces) < SMALL):
             return
@@ -52,7 +52,7 @@ class SourceProcess:
         pipe = subprocess.PIPE
         try:
             self._process = subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=subprocess.DEVNULL)
-        except OSError:  # no room for it: the faces are then drawn here
+        except OSError:  # no room for it: all is then drawn here
             return
         self._faces = self._answers((source, surfaces.skeleton, names), 1 + len(names) if names else 0)
 
