@@ -1,4 +1,4 @@
-"""The WebSocket that feeds a page with live poses: its frames as RFC 6455 has them, who may have it, what it brings."""
+"""The events that feed a page with live poses: who may have them, what they bring."""
 
 import http.client
 import json
@@ -25,62 +25,9 @@ from mua.pose.encoding import PoseEncoding
 from mua.share.live_feed import PATH, Feed, live_site
 from mua.share.server import serving
 from mua.share.site import Shown, player_site
-from mua.share.websocket import MOST, WebSocket, accept
 
-KEY, PROOF = "dGhlIHNhbXBsZSBub25jZQ==", "s3pPLMBiTxaQ9kYGzzhZRbK+xOo="  # section 1.3
-HELLO = bytes.fromhex("818537fa213d7f9f4d5158")  # section 5.7: a masked "Hello"
 HEAD = person().names.index("Head")
 WAIT = 20.0  # seconds for what comes at once
-
-
-@pytest.fixture
-def ends() -> Iterator[tuple[WebSocket, socket.socket]]:
-    """Our end of a connection, and the browser's."""
-    ours, theirs = socket.socketpair()
-    with closing(ours), closing(theirs):
-        yield WebSocket(ours), theirs
-
-
-def test_answers_the_handshake_of_the_standard() -> None:
-    assert accept(KEY) == PROOF
-
-
-@pytest.mark.parametrize(
-    ("size", "head"),
-    [(5, "8105"), (125, "817d"), (126, "817e007e"), (65535, "817effff"), (65536, "817f0000000000010000")],
-)
-def test_a_text_is_one_frame_of_its_length(ends: tuple[WebSocket, socket.socket], size: int, head: str) -> None:
-    ours, theirs = ends
-    sending = Thread(target=ours.send, args=("x" * size,))
-    sending.start()
-    expected = bytes.fromhex(head) + b"x" * size
-    assert theirs.recv(len(expected), socket.MSG_WAITALL) == expected
-    sending.join()
-
-
-def test_reads_what_a_browser_sends_in_whatever_pieces(ends: tuple[WebSocket, socket.socket]) -> None:
-    ours, theirs = ends
-    assert ours.replies(0.0) == []
-    theirs.sendall(HELLO + HELLO)
-    assert ours.replies(WAIT) == ["Hello", "Hello"]
-    for byte in HELLO[:-1]:
-        theirs.sendall(bytes([byte]))
-        assert ours.replies(WAIT) == []
-    theirs.sendall(HELLO[-1:])
-    assert ours.replies(WAIT) == ["Hello"]
-
-
-@pytest.mark.parametrize(
-    "sent",
-    [bytes.fromhex("888000000000"), b"\x81\x05Hello", bytes.fromhex("81fe1000") + bytes(8), bytes(MOST), b""],
-    ids=["closes", "not masked", "too long", "nonsense", "gone"],
-)
-def test_ends_with_what_it_does_not_understand(ends: tuple[WebSocket, socket.socket], sent: bytes) -> None:
-    ours, theirs = ends
-    theirs.sendall(sent)
-    if not sent:
-        theirs.close()
-    assert ours.replies(WAIT) is None
 
 
 class Turning:
@@ -101,7 +48,7 @@ def live() -> Live:
 def port(live: Live) -> Iterator[int]:
     """Of a server of a page that is fed."""
     feed = Feed([live, live], Latency())
-    with serving(live_site(player_site([], Shown("live"))), {PATH: feed.feed}) as server:
+    with serving(live_site(player_site([], Shown("live"))), {PATH: feed}) as server:
         thread = Thread(target=server.serve_forever, args=(0.02,))
         thread.start()
         yield server.server_port
@@ -109,33 +56,27 @@ def port(live: Live) -> Iterator[int]:
         thread.join()
 
 
-def asked(port: int, path: str = f"/{PATH}", **headers: str) -> tuple[int, http.client.HTTPConnection]:
-    """The status of a request for a WebSocket, and its connection."""
+def asked(
+    port: int, path: str = f"/{PATH}", *, method: str = "GET", body: str | None = None, **headers: str
+) -> tuple[http.client.HTTPResponse, http.client.HTTPConnection]:
+    """What the server answers, and the connection."""
     connection = http.client.HTTPConnection("127.0.0.1", port, timeout=WAIT)
-    handshake = {"Upgrade": "websocket", "Connection": "Upgrade", "Sec-WebSocket-Version": "13"}
-    origin = {"Sec-WebSocket-Key": KEY, "Origin": f"http://127.0.0.1:{port}"}
-    connection.putrequest("GET", path)
-    for name, value in {**handshake, **origin, **headers}.items():
-        connection.putheader(name.replace("_", "-"), value)
-    connection.endheaders()
-    with connection.sock.makefile("rb", buffering=0) as answer:
-        status = int(answer.readline().split()[1])
-        while answer.readline().strip():
-            pass
-    return status, connection
+    connection.request(method, path, body, headers)
+    return connection.getresponse(), connection
 
 
-def text(connection: http.client.HTTPConnection) -> Any:
+def text(answer: http.client.HTTPResponse) -> Any:
     """The next message."""
-    size = int.from_bytes(connection.sock.recv(4, socket.MSG_WAITALL)[2:])
-    return json.loads(connection.sock.recv(size, socket.MSG_WAITALL))
+    name, message = answer.readline().split(b": ", 1)
+    assert (name, answer.readline()) == (b"data", b"\n")
+    return json.loads(message)
 
 
 def test_brings_the_pose_of_every_avatar_as_it_changes(port: int, live: Live) -> None:
-    status, connection = asked(port)
+    answer, connection = asked(port)
     with closing(connection):
-        assert status == 101
-        found = [text(connection) for _ in range(5)]
+        assert (answer.status, answer.headers["Content-Type"]) == (200, "text/event-stream")
+        found = [text(answer) for _ in range(5)]
     assert sorted({message["id"] for message in found}) == [message["id"] for message in found]
     for message in found:
         first, second = message["avatars"]
@@ -156,24 +97,42 @@ def test_brings_the_pose_of_every_avatar_as_it_changes(port: int, live: Live) ->
     [
         (f"/{PATH}", {"Origin": "https://example.org"}),
         (f"/{PATH}", {"Origin": "null"}),
-        ("/index.html", {}),
+        (f"/{PATH}", {"Host": "example.org"}),
     ],
 )
-def test_nobody_but_the_page_is_given_poses(port: int, path: str, headers: dict[str, str]) -> None:
-    status, connection = asked(port, path, **headers)
-    connection.close()
-    assert status == 403
+@pytest.mark.parametrize("method", ["GET", "POST"])
+def test_nobody_but_the_page_is_given_poses(port: int, method: str, path: str, headers: dict[str, str]) -> None:
+    answer, connection = asked(port, path, method=method, body="1" if method == "POST" else None, **headers)
+    with closing(connection):
+        assert answer.status == 403
 
 
-def test_a_server_that_feeds_nobody_has_no_socket() -> None:
+@pytest.mark.parametrize(("path", "body", "status"), [("/index.html", "1", 403), (f"/{PATH}", 33 * "1", 400)])
+def test_an_answer_is_short_and_of_a_stream(port: int, path: str, body: str, status: int) -> None:
+    answer, connection = asked(port, path, method="POST", body=body)
+    with closing(connection):
+        assert answer.status == status
+
+
+def test_what_a_page_has_drawn_is_timed(live: Live) -> None:
+    latency = Latency()
+    feed = Feed([live], latency)
+    number = json.loads(next(feed.texts()))["id"]
+    feed.replied("another")
+    assert str(latency) == "no picture yet"
+    feed.replied(str(number))
+    assert "from packet to picture" in str(latency)
+
+
+def test_a_server_that_feeds_nobody_has_no_stream() -> None:
     with serving(player_site([], Shown("still"))) as server:
         thread = Thread(target=server.serve_forever, args=(0.02,))
         thread.start()
-        status, connection = asked(server.server_port)
-        connection.close()
+        answer, connection = asked(server.server_port)
+        with closing(connection):
+            assert answer.status == 404
         server.shutdown()
         thread.join()
-    assert status == 403
 
 
 def test_mua_view_feeds_its_page_with_what_it_hears(
@@ -193,14 +152,14 @@ def test_mua_view_feeds_its_page_with_what_it_hears(
             with closing(page):
                 page.request("GET", path)
                 found[path] = page.getresponse().read().decode()
-        _, connection = asked(server.server_port)
+        live, connection = asked(server.server_port)
         with closing(connection):
             turned = bundle(("/VMC/Ext/Bone/Pos", "Head", *[0.0] * 4, 0.6, 0.0, 0.8), ("/VMC/Ext/OK", 1))
             deadline = time.monotonic() + WAIT
             with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as program:
                 while not found.get("live") and time.monotonic() < deadline:
                     program.sendto(turned, ("127.0.0.1", free))
-                    (avatar,) = text(connection)["avatars"]
+                    (avatar,) = text(live)["avatars"]
                     turns = np.reshape(avatar["rotations"], (-1, 4))
                     found["live"] = abs(turns[2, 1]) > 0.5 and len(turns)
         thread.join()

@@ -34,7 +34,7 @@ def test_packets_become_poses_of_the_page_and_their_latency_is_measured(browser:
         live = Live(receiver.newest, target, PoseEncoding(joints=(1,), rate=30.0), expressions=("happy",))
         feed = Feed([live], receiver.latency)
         site = live_site(player_site([], Shown("live", more={"live": PATH})))
-        with serving(site, {PATH: feed.feed}) as server:
+        with serving(site, {PATH: feed}) as server:
             thread = Thread(target=server.serve_forever, args=(0.02,))
             thread.start()
             page = browser.page(address(server))

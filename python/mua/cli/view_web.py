@@ -67,14 +67,13 @@ def serve(
     joints = None if mapping is None else read_mapping(mapping)
     site = player_site(files, shown)
     with ExitStack() as open_now:
-        sockets = {}
+        streams = {}
         if (receiver := open_now.enter_context(listening(listen))) is not None:
             followers = [
                 live_of(avatar, file, receiver, joints) for file, (avatar, _) in zip(files, started, strict=True)
             ]
-            feed = Feed(followers, receiver.latency)
-            site, sockets = live_site(site), {PATH: feed.feed}
-        server = open_now.enter_context(serving(site, sockets))
+            site, streams = live_site(site), {PATH: Feed(followers, receiver.latency)}
+        server = open_now.enter_context(serving(site, streams))
         typer.echo(f"{shown.title}: {address(server)} (Ctrl-C ends)")
         if opens:
             webbrowser.open(address(server))

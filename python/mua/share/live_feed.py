@@ -1,9 +1,9 @@
 """Sends live poses to a page, as python/mua/web/bridge.js reads them."""
 
 import json
-from collections.abc import Sequence
-from dataclasses import dataclass
-from time import monotonic
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from time import monotonic, sleep
 
 import numpy as np
 
@@ -11,7 +11,6 @@ from mua.live.live_pose import Live
 from mua.live.receiver import Latency
 from mua.pose.skeleton import Pose
 from mua.share.site import BRIDGE, PAGE, PLAYER, SCRIPT, Content, Site
-from mua.share.websocket import WebSocket
 
 PATH = "live"
 TICK = 1 / 60  # seconds between looks at what has come
@@ -22,29 +21,36 @@ DECIMALS = 6  # of a number: less than the rounding of VMC's own
 
 @dataclass(frozen=True)
 class Feed:
-    """What a page shows live; each of its sockets is fed in a thread of its own."""
+    """What a page shows live."""
 
     performers: Sequence[Live]  # in the order of the page's avatars
     latency: Latency
+    _arrivals: dict[str, float] = field(default_factory=dict)  # of poses that are not drawn yet, by their id
 
-    def feed(self, socket: WebSocket) -> None:
-        """Send poses until the page has gone."""
+    def texts(self) -> Iterator[str]:
+        """The poses of every avatar whenever one changes, as JSON."""
         sent: tuple[int, ...] = ()
-        begun = at = monotonic()
-        arrivals: dict[str, float] = {}  # of poses that are not drawn yet, by their id
-        while (replies := socket.replies(TICK)) is not None:
+        at = 0.0
+        while True:
             now = monotonic()
-            for reply in replies:
-                if reply in arrivals:
-                    self.latency.drawn(arrivals.pop(reply), now)
             poses = [performer.advance(now) for performer in self.performers]
             moments = tuple(performer.moment for performer in self.performers)
-            if moments == sent and now - at < AGAIN:
-                continue
-            sent, at, number = moments, now, str(round((now - begun) * 1e6))
-            arrived = self.performers[0].arrived
-            arrivals = dict(list(arrivals.items())[-MOST_UNDRAWN:]) | ({} if arrived is None else {number: arrived})
-            socket.send(json.dumps({"id": int(number), "avatars": [_written(shown.pose) for shown in poses]}))
+            if moments != sent or now - at >= AGAIN:
+                sent, at, number = moments, now, round(now * 1e6)
+                self._note(str(number))
+                yield json.dumps({"id": number, "avatars": [_written(shown.pose) for shown in poses]})
+            sleep(TICK)
+
+    def replied(self, text: str) -> None:
+        """Take the id of poses that a page has drawn."""
+        if (arrived := self._arrivals.pop(text, None)) is not None:
+            self.latency.drawn(arrived, monotonic())
+
+    def _note(self, number: str) -> None:
+        for old in list(self._arrivals)[:-MOST_UNDRAWN]:
+            self._arrivals.pop(old, None)
+        if (arrived := self.performers[0].arrived) is not None:
+            self._arrivals[number] = arrived
 
 
 def live_site(site: Site) -> dict[str, Content]:

@@ -4,17 +4,16 @@ Only the paths of the site are there: no directory is listed, and no other file 
 """
 
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from io import BufferedIOBase, BytesIO
 from pathlib import Path, PurePosixPath
-from typing import IO
+from typing import IO, Protocol
 from urllib.parse import unquote, urlsplit
 
 from mua.share.site import PAGE, Content, Site
-from mua.share.websocket import WebSocket, accept, asks_for_socket
 
 LOOPBACK = "127.0.0.1"
 TYPES = {
@@ -29,15 +28,24 @@ TYPES = {
 BINARY = "application/octet-stream"
 BLOCK = 1 << 18  # bytes that are read at once
 RANGE = re.compile(r"bytes=(\d*)-(\d*)")
+LONGEST_REPLY = 32  # bytes of what a page sends
+
+
+class Stream(Protocol):
+    """Texts for pages as server-sent events, and what the pages answer."""
+
+    def texts(self) -> Iterator[str]: ...
+
+    def replied(self, text: str) -> None: ...
 
 
 @contextmanager
 def serving(
     site: Site,
-    sockets: Mapping[str, Callable[[WebSocket], None]] | None = None,  # by path: what to do with a WebSocket
+    streams: Mapping[str, Stream] | None = None,  # by path
 ) -> Iterator[ThreadingHTTPServer]:
     """A server on a free port of the loopback address; `serve_forever` runs it, and it is closed at the end."""
-    handler = type("Handler", (_Handler,), {"site": site, "sockets": sockets or {}})
+    handler = type("Handler", (_Handler,), {"site": site, "streams": streams or {}})
     server = ThreadingHTTPServer((LOOPBACK, 0), handler)
     server.daemon_threads = True  # a browser that keeps its connection delays nobody
     try:
@@ -58,13 +66,26 @@ class _Handler(BaseHTTPRequestHandler):
     server_version, sys_version = "mua", ""
     disable_nagle_algorithm = True  # a body would wait until the browser has confirmed the header before it
     site: Site
-    sockets: Mapping[str, Callable[[WebSocket], None]]
+    streams: Mapping[str, Stream]
 
     def do_GET(self) -> None:
-        if asks_for_socket(self.headers):
-            self._begin_socket()
-        else:
+        stream = self.streams.get(self._named)
+        if stream is None:
             self._answer(body=True)
+        elif self._is_for_our_page():
+            self._send_texts(stream)
+
+    def do_POST(self) -> None:
+        size = self.headers.get("Content-Length", "")
+        if not (size.isdecimal() and int(size) <= LONGEST_REPLY):
+            self.close_connection = True  # what the request holds is not read
+            self._refuse(HTTPStatus.BAD_REQUEST)
+            return
+        reply = self.rfile.read(int(size)).decode(errors="replace")
+        if self._is_for_our_page():
+            self.streams[self._named].replied(reply)
+            self.send_response(HTTPStatus.NO_CONTENT)
+            self.end_headers()
 
     def do_HEAD(self) -> None:
         self._answer(body=False)
@@ -81,20 +102,25 @@ class _Handler(BaseHTTPRequestHandler):
         """The names under which a browser on this machine asks."""
         return [f"{name}:{self.connection.getsockname()[1]}" for name in (LOOPBACK, "localhost")]
 
-    def _begin_socket(self) -> None:
-        """Hand over the connection, to pages of this server alone: any other may ask for one too."""
-        self.close_connection = True
-        serve = self.sockets.get(self._named)
-        if serve is None or self.headers.get("Origin") not in [f"http://{host}" for host in self._hosts]:
+    def _is_for_our_page(self) -> bool:
+        """Refuse a stream to all but pages of this server; where there is none, to them too."""
+        ours = self.headers.get("Host") in self._hosts
+        ours &= self.headers.get("Origin") in (None, *(f"http://{host}" for host in self._hosts))
+        if not ours or self._named not in self.streams:
             self._refuse(HTTPStatus.FORBIDDEN)
-            return
-        self.send_response(HTTPStatus.SWITCHING_PROTOCOLS)
-        answer = {"Upgrade": "websocket", "Connection": "Upgrade"}
-        for name, value in {**answer, "Sec-WebSocket-Accept": accept(self.headers["Sec-WebSocket-Key"])}.items():
+            return False
+        return True
+
+    def _send_texts(self, stream: Stream) -> None:
+        """Send a stream until the page has gone."""
+        self.close_connection = True
+        self.send_response(HTTPStatus.OK)
+        for name, value in {"Content-Type": "text/event-stream", "Cache-Control": "no-store"}.items():
             self.send_header(name, value)
         self.end_headers()
-        with suppress(OSError):  # the browser went away
-            serve(WebSocket(self.connection))
+        with suppress(OSError):
+            for text in stream.texts():
+                self.wfile.write(f"data: {text}\n\n".encode())
 
     def _answer(self, *, body: bool) -> None:
         """Send the file at a path, or the requested part of it."""
