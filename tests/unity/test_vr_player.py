@@ -14,7 +14,6 @@ from mua.asset import write
 
 KERNELS = ROOT / "ComputeShaders"
 SAMPLE = ROOT / "unity-package" / "Samples~" / "VrPlayer"
-HEADER = 32  # bytes of a string beyond its characters
 Reports = dict[str, list[str]]
 Story = Callable[..., Reports]
 
@@ -195,12 +194,6 @@ def test_a_second_turns_a_quarter_and_rises_a_metre_and_a_half_and_scrubs_two_se
     assert reported["scrubbed"] == ["0.250"]  # in 9 of 72 frames
 
 
-def test_numbers_are_written_digit_by_digit(csharp: CSharp, program: Path, folder: Path) -> None:
-    reported = csharp.run(program, KERNELS, "Numbers", folder, folder / "persistent", folder / "streaming")
-    written = reported.splitlines()[0].removeprefix("numbers\t").rstrip("; ")
-    assert written == "0 0.0; 9 9.0; 10 10.0; 100 100.0; 100 100.0; 101 101.0; 1000 1000.0; 7 7.3; - -; - -"
-
-
 def test_where_no_avatars_are_streamed_there_is_no_index(story: Story) -> None:
     reported = story("Index", files=())
     assert (reported["of nothing"], reported["of what is gone"], reported["nowhere"]) == (
@@ -250,12 +243,10 @@ def test_the_panel_says_what_is_shown_and_how_fast(story: Story, folder: Path) -
 
 
 @BOTH_INPUTS
-def test_a_frame_allocates_nothing_and_a_second_two_texts(story: Story) -> None:
+def test_a_frame_allocates_nothing_but_two_texts_a_second(story: Story) -> None:
     reported = story("Allocates")
     assert reported["texts"] == ["4"]
     assert reported["allocated"] == ["0"]
-    assert int(reported["beyond texts"][0]) < 4 * HEADER
-    assert reported["still"] == ["0"]
 
 
 def test_avatars_come_in_the_order_of_folder_app_and_scene(story: Story) -> None:

@@ -61,16 +61,6 @@ namespace Mua.Samples.VrPlayer
             Say("scrubbed", shown.Seconds.ToString("0.000"));
         }
 
-        private static void Numbers()
-        {
-            var text = new PanelText();
-            foreach (double number in new[] { 0, 9, 10, 99.96, 100, 101, 1000, 7.26, -3.5, double.NaN })
-            {
-                text.Add(number, 0).Add(" ").Add(number, 1).Add("; ");
-            }
-            Say("numbers", text);
-        }
-
         /// <summary>The index of an empty StreamingAssets, of none, and of one that lost its avatars.</summary>
         private static void Index()
         {

@@ -207,7 +207,7 @@ namespace Mua.Samples.VrPlayer
             shown.IsPlaying = true;
             Frames(200);
             int texts = 0;
-            long most = 0, all = GC.GetAllocatedBytesForCurrentThread();
+            long most = 0;
             for (int i = 0; i < 144; i++)
             {
                 string text = panel.text;
@@ -217,18 +217,9 @@ namespace Mua.Samples.VrPlayer
                 bool isNew = !ReferenceEquals(text, panel.text);
                 texts += isNew ? 1 : 0;
                 most = isNew ? most : Math.Max(most, spent);
-                all += isNew ? 2 * panel.text.Length : 0;
             }
-            long rest = GC.GetAllocatedBytesForCurrentThread() - all;
             Say("texts", texts);
             Say("allocated", most);
-            Say("beyond texts", rest);
-            shown.IsPlaying = false;
-            Frames(72);
-            long still = GC.GetAllocatedBytesForCurrentThread();
-            Frames(72);
-            rest = GC.GetAllocatedBytesForCurrentThread() - still;
-            Say("still", rest);
         }
 
         private static void Order()

@@ -1,4 +1,6 @@
 using System;
+using System.Globalization;
+using System.Text;
 using UnityEngine;
 
 namespace Mua.Samples.VrPlayer
@@ -16,7 +18,7 @@ namespace Mua.Samples.VrPlayer
         private readonly AvatarShelf shelf;
         private readonly HeadsetDisplay display;
         private readonly StageTimes times = new StageTimes();
-        private readonly PanelText text = new PanelText();
+        private readonly StringBuilder text = new StringBuilder();
         private string last = "";
         private float elapsed; // seconds since the last text
         private int frames; // in these
@@ -46,11 +48,8 @@ namespace Mua.Samples.VrPlayer
             AddStages();
             AddAvatar();
             AddMessages(message);
-            if (!text.Same(last))
-            {
-                last = text.ToString();
-                target.text = last;
-            }
+            last = text.ToString();
+            target.text = last;
             elapsed = 0;
             frames = 0;
         }
@@ -62,21 +61,22 @@ namespace Mua.Samples.VrPlayer
 
         private void AddRates(double seconds)
         {
-            text.Add(1 / seconds, 0).Add(" fps   ").Add(1000 * seconds, 1).Add(" ms a frame   ");
-            text.Add(times.OfFrame(), 1).Add(" ms GPU").Line();
+            text.Append(Number(1 / seconds, "F0")).Append(" fps   ").Append(Number(1000 * seconds, "F1")).Append(" ms a frame   ");
+            text.Append(Number(times.OfFrame(), "F1")).Append(" ms GPU\n");
             if (display.Rate > 0)
             {
-                text.Add("display ").Add(display.Rate, 0).Add(" Hz, ").Add(display.WantedRate, 0).Add(" wanted   foveation ");
-                text.Add(display.Foveation, 2).Line();
+                text.Append("display ").Append(Number(display.Rate, "F0")).Append(" Hz, ");
+                text.Append(Number(display.WantedRate, "F0")).Append(" wanted   foveation ");
+                text.Append(Number(display.Foveation, "F2")).Append('\n');
             }
         }
 
         private void AddStages()
         {
-            text.Line().Add(times.IsOfGpu ? "ms on the GPU" : "ms of recording, on the CPU").Line();
+            text.Append('\n').Append(times.IsOfGpu ? "ms on the GPU" : "ms of recording, on the CPU").Append('\n');
             for (int i = 0; i < times.Names.Count; i++)
             {
-                text.Add(times.Names[i]).Add(" ").Add(times.Of(i), 2).Add(i % 3 == 2 ? "\n" : "   ");
+                text.Append(times.Names[i]).Append(' ').Append(Number(times.Of(i), "F2")).Append(i % 3 == 2 ? "\n" : "   ");
             }
         }
 
@@ -87,15 +87,15 @@ namespace Mua.Samples.VrPlayer
             {
                 return;
             }
-            text.Line().Add("avatar ").Add(shelf.Position + 1).Add("/").Add(shelf.Count).Add("   ").Add(entry.Name).Line();
+            text.Append("\navatar ").Append(shelf.Position + 1).Append('/').Append(shelf.Count).Append("   ").Append(entry.Name).Append('\n');
             if (shown.State == AvatarState.Loading)
             {
-                text.Add("loading ").Add(100 * shown.Progress, 0).Add(" %").Line();
+                text.Append("loading ").Append(Number(100 * shown.Progress, "F0")).Append(" %\n");
             }
             else if (shown.State == AvatarState.Ready)
             {
                 AddClip();
-                text.Add("outside of training ").Add(100 * shown.OutsideTraining, 0).Add(" %").Line();
+                text.Append("outside of training ").Append(Number(100 * shown.OutsideTraining, "F0")).Append(" %\n");
             }
             AddViews();
         }
@@ -104,38 +104,59 @@ namespace Mua.Samples.VrPlayer
         {
             if (shown.FrameCount == 0)
             {
-                text.Add("no clip").Line();
+                text.Append("no clip\n");
                 return;
             }
-            text.Add("clip ").Add(shown.ClipIndex + 1).Add("/").Add(shown.Clips.Count).Add("   ");
-            text.Add(shown.Clips[shown.ClipIndex]).Line();
-            text.Add("frame ").Add(shown.Frame + 1).Add("/").Add(shown.FrameCount);
-            text.Add(shown.IsPlaying ? "   playing" : "   paused").Line();
+            text.Append("clip ").Append(shown.ClipIndex + 1).Append('/').Append(shown.Clips.Count).Append("   ");
+            text.Append(shown.Clips[shown.ClipIndex]).Append('\n');
+            text.Append("frame ").Append(shown.Frame + 1).Append('/').Append(shown.FrameCount);
+            text.Append(shown.IsPlaying ? "   playing\n" : "   paused\n");
         }
 
         private void AddViews()
         {
-            text.Add("shown:");
+            text.Append("shown:");
             for (int i = 0; i < ViewNames.Length; i++)
             {
                 if (((int)shown.Views & (1 << i)) != 0)
                 {
-                    text.Add(" ").Add(ViewNames[i]);
+                    text.Append(' ').Append(ViewNames[i]);
                 }
             }
-            text.Line();
+            text.Append('\n');
         }
 
         private void AddMessages(string message)
         {
             if (message.Length > 0)
             {
-                text.Line().Wrap(message, Columns).Line();
+                AddWrapped(message);
             }
             if (shown.State == AvatarState.Ready && shown.Message.Length > 0)
             {
-                text.Line().Wrap(shown.Message, Columns).Line();
+                AddWrapped(shown.Message);
             }
+        }
+
+        /// <summary>Below an empty line, in lines of at most Columns characters, parted at spaces where there are any.</summary>
+        private void AddWrapped(string message)
+        {
+            text.Append('\n');
+            int start = 0;
+            while (message.Length - start > Columns)
+            {
+                int space = message.LastIndexOf(' ', start + Columns, Columns);
+                int end = space > start ? space : start + Columns;
+                text.Append(message, start, end - start).Append('\n');
+                start = space > start ? space + 1 : end;
+            }
+            text.Append(message, start, message.Length - start).Append('\n');
+        }
+
+        /// <summary>A dash where nothing is known.</summary>
+        private static string Number(double value, string format)
+        {
+            return value >= 0 && value < int.MaxValue ? value.ToString(format, CultureInfo.InvariantCulture) : "-";
         }
     }
 }
