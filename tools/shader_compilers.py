@@ -6,7 +6,6 @@ import re
 import shlex
 import shutil
 import subprocess
-import sys
 import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -24,7 +23,7 @@ UNKNOWN_PRAGMA = "15601"  # slangc's warning about `#pragma kernel`
 INSTALL = {
     "glslang": glslang.INSTALL,
     "slang": "slangc: PyPI package slangtorch, or the Vulkan SDK",
-    "dxc": "dxc: the Vulkan SDK, a command in $MUA_DXC, or the PyPI package compushady",
+    "dxc": "dxc: the Vulkan SDK, or a command in $MUA_DXC",
     "fxc": "fxc: the Windows SDK, or a command in $MUA_FXC",
 }
 
@@ -119,10 +118,8 @@ def _slang() -> Compiler | None:
 
 
 def _dxc() -> Compiler | None:
-    """$MUA_DXC or `dxc` on the PATH, else the library that comes with compushady."""
+    """$MUA_DXC or `dxc` on the PATH."""
     program = _program("MUA_DXC", "dxc")
-    if program is None and _wheel("compushady", "backends"):
-        program = [sys.executable, str(Path(__file__).with_name("dxcompiler.py"))]
     if program is None:
         return None
 

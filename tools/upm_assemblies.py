@@ -8,7 +8,6 @@ from upm_package import Assembly, Package
 from upm_scripts import OURS, SYMBOL, SYMBOLS, VERSION_SYMBOL, is_ours
 
 TEST_FRAMEWORK = "com.unity.test-framework"
-TEST_LIBRARY = "nunit.framework.dll"
 # Assemblies of Unity's packages that ours may refer to, and the package of each.
 UNITY = {
     "UnityEngine.TestRunner": TEST_FRAMEWORK,
@@ -51,29 +50,11 @@ def faults(packages: Sequence[Package]) -> Iterator[str]:
             other = known.setdefault(assembly.name, where)
             if other != where:
                 yield f'{where}: name: "{assembly.name}" is also that of {other}'
-    every = [assembly for package in packages for assembly in package.assemblies]
     for package in packages:
-        folders = [assembly.path.parent for assembly in package.assemblies]
         for assembly in package.assemblies:
             yield from _shape(package, assembly)
             yield from _references(package, assembly, set(known))
-            if assembly.name in reached(assembly, every):
-                yield f"{package.where(assembly.path)}: references: lead back to {assembly.name}"
             yield from _symbols(package, assembly)
-            if folders.count(assembly.path.parent) > 1:
-                yield f"{package.where(assembly.path)}: not the only assembly definition of its folder"
-
-
-def reached(assembly: Assembly, every: Sequence[Assembly]) -> set[str]:
-    """Names of the assemblies that one refers to, and that those refer to."""
-    by_name = {each.name: each for each in every}
-    found: set[str] = set()
-    waiting = [assembly]
-    while waiting:
-        names = {str(name) for name in waiting.pop().items("references")} - found
-        found |= names
-        waiting += [by_name[name] for name in names if name in by_name]
-    return found
 
 
 def _unreadable(package: Package) -> Iterator[str]:
@@ -94,9 +75,6 @@ def _shape(package: Package, assembly: Assembly) -> Iterator[str]:
         for platform in assembly.items(key):
             if platform not in PLATFORMS:
                 yield f"{where}: {key}: {json.dumps(platform)}, expected one of {', '.join(sorted(PLATFORMS))}"
-    for name in assembly.items("precompiledReferences"):
-        if name != TEST_LIBRARY or not definition.get("overrideReferences"):
-            yield f"{where}: precompiledReferences: {json.dumps(name)}, expected {TEST_LIBRARY}, and overrideReferences"
     in_editor = "Editor" in assembly.path.parts[:-1]
     if in_editor != (assembly.items("includePlatforms") == ["Editor"]):
         expected = '["Editor"] for what lies below Editor/' if in_editor else "no editor only, outside Editor/"

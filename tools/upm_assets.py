@@ -11,7 +11,6 @@ LONGEST_PATH = 140  # Windows takes 260: a project and its Library/PackageCache 
 NAMES = re.compile(r"[A-Za-z0-9 ._~+-]+")
 RESERVED = re.compile(r"(con|prn|aux|nul|com[0-9]|lpt[0-9])(\..*)?", re.IGNORECASE)  # devices of Windows
 HIDDEN = ("Samples~", "Documentation~", "Tests/Golden~")
-LEFT_BY_SYSTEMS = ("Thumbs.db", "desktop.ini", "Desktop.ini")
 
 YAML = (".asset", ".mat", ".prefab", ".unity", ".controller", ".anim", ".lighting", ".renderTexture")
 REFERENCE = re.compile(r"\{fileID: (-?\d+), guid: ([^,}]*), type: (\d+)\}")
@@ -36,8 +35,6 @@ def path_faults(package: Package) -> Iterator[str]:
             yield f"{where}: {len(str(path))} characters, expected at most {LONGEST_PATH}"
         if not NAMES.fullmatch(path.name) or path.name.endswith((".", " ")) or RESERVED.fullmatch(path.name):
             yield f"{where}: name {path.name!a}, expected letters, digits, blanks and ._~+-, and no device of Windows"
-        if path.name in (*LEFT_BY_SYSTEMS, ".DS_Store"):
-            yield f"{where}: left by an operating system, expected only files of the package"
         other = seen.setdefault(str(path).lower(), path)
         if other != path:
             yield f"{where}: differs from {other} in case only"
@@ -140,5 +137,5 @@ def hidden_faults(package: Package) -> Iterator[str]:
     for path in package.entries:
         if path.name.endswith("~") and path.as_posix() not in HIDDEN:
             yield f"{package.where(path)}: hidden from Unity, expected only {', '.join(HIDDEN)}"
-        if path.name.startswith(".") and path.name != ".DS_Store" and is_imported(path.parent):
+        if path.name.startswith(".") and is_imported(path.parent):
             yield f"{package.where(path)}: hidden from Unity, expected only what belongs to the package"

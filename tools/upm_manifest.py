@@ -31,9 +31,7 @@ def _are_texts(value: Any) -> bool:
     return isinstance(value, list) and all(map(_is_text, value))
 
 
-HTTPS = _matches(r"https://[^\s]+")
-LINK = "an https:// address"
-# Field: what holds for its value, and how a fault names it. "type" is not here: it hides a package from projects.
+# Field: what holds for its value, and how a fault names it. Fields that these packages do not have are none.
 FIELDS: dict[str, tuple[Callable[[Any], bool], str]] = {
     "name": (
         lambda value: _matches(NAME.pattern)(value) and len(value) <= LONGEST_NAME,
@@ -43,16 +41,11 @@ FIELDS: dict[str, tuple[Callable[[Any], bool], str]] = {
     "displayName": (_is_text, "a text"),
     "description": (_is_text, "a text"),
     "unity": (_matches(r"\d{4}\.\d+"), "a version of the editor like 6000.0"),
-    "unityRelease": (_matches(r"\d+[abf]\d+"), "a release of the editor like 20f1"),
     "dependencies": (lambda value: isinstance(value, dict), "an object of names and versions"),
     "samples": (lambda value: isinstance(value, list), "a list of samples"),
     "keywords": (_are_texts, "a list of words"),
     "author": (_is_author, "a name, or an object with one"),
     "license": (_matches(r"[A-Za-z0-9.+-]+"), "an SPDX identifier"),
-    "licensesUrl": (HTTPS, LINK),
-    "documentationUrl": (HTTPS, LINK),
-    "changelogUrl": (HTTPS, LINK),
-    "hideInEditor": (lambda value: isinstance(value, bool), "true or false"),
 }
 REQUIRED = ("name", "version", "displayName", "description", "unity", "license")
 
@@ -74,7 +67,7 @@ def faults(package: Package, siblings: dict[str, str]) -> Iterator[str]:
     yield from (f"{where}: {key}: not there, expected {FIELDS[key][1]}" for key in REQUIRED if key not in read)
     for key, value in read.items():
         if key not in FIELDS:
-            yield f"{where}: {key}: a field that Unity's package manager does not know"
+            yield f"{where}: {key}: not a field of FIELDS in tools/upm_manifest.py"
         elif not FIELDS[key][0](value):
             yield f"{where}: {key}: {json.dumps(value)}, expected {FIELDS[key][1]}"
     yield from _dependencies(where, read, siblings)

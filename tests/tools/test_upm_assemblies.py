@@ -34,11 +34,6 @@ CASES: list[tuple[str, dict[str, Any], str]] = [
     ),
     (
         ASMDEF,
-        {"precompiledReferences": ["nunit.framework.dll"]},
-        'precompiledReferences: "nunit.framework.dll", expected nunit.framework.dll, and overrideReferences',
-    ),
-    (
-        ASMDEF,
         {"references": ["Mua.Gone"]},
         'references: "Mua.Gone" is no assembly of these packages, '
         "nor one of Unity's that tools/upm_assemblies.py lists",
@@ -93,25 +88,6 @@ def test_finds_one_fault(packages: list[Path], name: str, changes: dict[str, Any
 def test_finds_a_definition_that_cannot_be(packages: list[Path], name: str, text: str, fault: str) -> None:
     found = faults_after(packages, lambda root: put(root / name, text), metas=True)
     assert found == [f"com.mua.test/{name}: {fault}"]
-
-
-def test_finds_assemblies_that_refer_to_each_other(packages: list[Path]) -> None:
-    third = '{"name": "Mua.Third", "rootNamespace": "Mua", "references": ["Mua.Test"]}'
-    put(packages[0] / "Third/Mua.Third.asmdef", third)
-    found = faults_after(packages, lambda root: edited(root / ASMDEF, references=["Mua.Third"]), metas=True)
-    assert found == [
-        "com.mua.test/Runtime/Mua.Test.asmdef: references: lead back to Mua.Test",
-        "com.mua.test/Third/Mua.Third.asmdef: references: lead back to Mua.Third",
-    ]
-
-
-def test_finds_two_assemblies_in_a_folder(packages: list[Path]) -> None:
-    definition = '{"name": "Mua.Second", "rootNamespace": "Mua"}'
-    found = faults_after(packages, lambda root: put(root / "Runtime/Mua.Second.asmdef", definition), metas=True)
-    assert found == [
-        f"com.mua.test/Runtime/{name}.asmdef: not the only assembly definition of its folder"
-        for name in ("Mua.Second", "Mua.Test")
-    ]
 
 
 @pytest.mark.parametrize(

@@ -47,7 +47,6 @@ WRITTEN: list[tuple[str, str, str]] = [
     ),
     ("Runtime/Größe.txt", "", f"name 'Gr\\xf6\\xdfe.txt', {NAME}"),
     ("Runtime/aux.txt", "", f"name 'aux.txt', {NAME}"),
-    ("Runtime/Thumbs.db", "", "left by an operating system, expected only files of the package"),
     ("Runtime/.swap", "", "hidden from Unity, expected only what belongs to the package"),
     ("Runtime/Frame.shader", '#include "gone.hlsl"\n', 'include "gone.hlsl", expected a file of a package here'),
 ]
