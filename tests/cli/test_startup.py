@@ -77,40 +77,36 @@ def refused(ended: Ended) -> str:
     return ended.sentence.removeprefix("error: ")
 
 
-@pytest.mark.parametrize("name", COMMANDS)
-def test_a_wrong_name_version_and_help_are_answered_before_anything_is_loaded(name: str, tmp_path: Path) -> None:
-    absent = tmp_path / "absent.muaavatar"
+def wrong_names(name: str, folder: Path, avatar: Path) -> dict[tuple[str | Path, ...], str]:
+    """Arguments of a command that name what is not there or is something else, and its sentences."""
+    absent, file, empty = folder / "absent.muaavatar", folder / "file", folder / "empty"
+    file.touch()
+    empty.mkdir()
     kind = "directory" if name in ("capture", "eval", "teach", "train") else "file"
-    wrong, version, shown = started(name, (absent,), ("--version",), ("--help",))
-    assert refused(wrong) == f"{absent}: there is no such {kind}"
+    wrong: dict[tuple[str | Path, ...], str] = {(absent,): f"{absent}: there is no such {kind}"}
+    if name in ("bench", "deploy", "export", "inspect", "pack", "share", "view"):
+        wrong[empty,] = f"{empty}: is a directory, expected a file"
+    if name in ("eval", "train"):
+        wrong[empty,] = f"{empty}: not a recording, it holds no {layout.HEADER}"
+        wrong[file,] = f"{file}: is a file, expected the directory of a recording"
+    if name in ("bake", "export", "view"):
+        wrong[avatar, "--motion", absent] = f"--motion {absent}: there is no such file or directory"
+    return wrong
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_wrong_names_version_and_help_are_answered_before_anything_is_loaded(
+    name: str, tmp_path: Path, avatar_file: Path
+) -> None:
+    wrong = wrong_names(name, tmp_path, avatar_file)
+    version, shown, *ended = started(name, ("--version",), ("--help",), *wrong)
+    assert [refused(one) for one in ended] == list(wrong.values())
     assert version == Ended(0, f"mua-{name} {mua.__version__}\n", "")
     assert shown.status == 0
     assert "--version" in shown.out
     assert "--quiet" in shown.out
     assert "loaded:" not in shown.out
-
-
-@pytest.mark.parametrize("name", ["bench", "deploy", "export", "inspect", "pack", "share", "view"])
-def test_a_directory_in_place_of_a_file_is_told_likewise(name: str, tmp_path: Path) -> None:
-    (ended,) = started(name, (tmp_path,))
-    assert refused(ended) == f"{tmp_path}: is a directory, expected a file"
-
-
-@pytest.mark.parametrize("name", ["eval", "train"])
-def test_what_is_no_recording_is_told_likewise(name: str, tmp_path: Path) -> None:
-    file = tmp_path / "file"
-    file.touch()
-    empty, no_directory = started(name, (tmp_path,), (file,))
-    assert refused(empty) == f"{tmp_path}: not a recording, it holds no {layout.HEADER}"
-    assert refused(no_directory) == f"{file}: is a file, expected the directory of a recording"
     assert inputs.HEADER == layout.HEADER
-
-
-@pytest.mark.parametrize("name", ["bake", "export", "view"])
-def test_absent_motion_is_told_likewise(name: str, tmp_path: Path, avatar_file: Path) -> None:
-    absent = tmp_path / "walks"
-    (ended,) = started(name, (avatar_file, "--motion", absent))
-    assert refused(ended) == f"--motion {absent}: there is no such file or directory"
 
 
 @pytest.mark.parametrize("name", COMMANDS)

@@ -158,25 +158,6 @@ def test_each_dispatch_sees_what_those_before_it_wrote(device: Device, shader: P
     assert quads.read(np.float32)[0] == 2**22
 
 
-def test_indirect_counts_come_from_the_device(device: Device, shader: Path) -> None:
-    kernel = device.kernel(shader, "AddIndex")
-    x, y = device.buffer(4 * 200, name="x"), device.buffer(np.full(200, -1, np.float32), name="y")
-    arguments = device.buffer(np.array([9, 2, 1, 1], np.uint32), name="arguments", indirect=True)
-    commands = device.commands()
-    commands.dispatch_indirect(kernel, arguments, 4, {"x": x, "y": y}, count=200, scale=1.0)
-    commands.submit()
-    np.testing.assert_array_equal(y.read(np.float32), [*range(128), *[-1] * 72])
-    for offset in (8, 2, -4):
-        with pytest.raises(InputError, match=f"kernel AddIndex: arguments at byte {offset} of arguments"):
-            commands.dispatch_indirect(kernel, arguments, offset, {"x": x, "y": y}, count=200, scale=1.0)
-
-
-def test_arguments_must_be_made_for_it(device: Device, shader: Path) -> None:
-    commands, plain = device.commands(), device.buffer(np.ones(3, np.uint32), name="plain")
-    with pytest.raises(InputError, match="kernel Twice: arguments in plain, expected a buffer made with indirect"):
-        commands.dispatch_indirect(device.kernel(shader, "Twice"), plain, 0, {"quads": ones(device)}, count=1)
-
-
 def test_timed_dispatches_give_times_by_kernel(device: Device, shader: Path) -> None:
     if not device.timestamps:
         with pytest.raises(InputError, match="no timestamps"):

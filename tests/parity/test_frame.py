@@ -51,8 +51,6 @@ class Listed:
     def dispatch(self, kernel: object, *_: object, **__: object) -> None:
         self.names.append(kernel.name)  # type: ignore[attr-defined]
 
-    dispatch_indirect = dispatch
-
 
 def saved(avatar: Avatar, directory: Path, *, storage: Storage = "f32") -> Path:
     path = directory / f"{storage}.muaavatar"

@@ -90,20 +90,15 @@ class _Player:
     def dispatch(self, event: dict[str, Any]) -> None:
         kernel = self.device.kernel(event["shader"], event["kernel"])
         self.result.kernels.append(kernel.name)
-        self.commands = self.commands or self.device.commands()
         bound = {slot.name: self._bound(kernel, event, slot.name, slot.stride) for slot in kernel.buffers}
         constants = {
             name: value(kernel.name, constant, *event["constants"][name])
             for name, constant in kernel.constants.items()
             if constant.used and name in event["constants"]
         }
-        if "indirect" in event:
-            number, offset = event["indirect"]
-            self._check_groups(kernel, number, offset)
-            self.commands = self.commands or self.device.commands()
-            self.commands.dispatch_indirect(kernel, self.buffers[number], offset, bound, **constants)
-        else:
-            self.commands.dispatch(kernel, tuple(event["groups"]), bound, **constants)
+        groups = self._groups(kernel, *event["indirect"]) if "indirect" in event else tuple(event["groups"])
+        self.commands = self.commands or self.device.commands()
+        self.commands.dispatch(kernel, groups, bound, **constants)
 
     def draw(self, event: dict[str, Any]) -> None:
         self.flush()
@@ -136,11 +131,14 @@ class _Player:
         self.flush()
         del self.buffers[event["buffer"]]
 
-    def _check_groups(self, kernel: Kernel, number: int, offset: int) -> None:
-        """A device that is given garbage for counts may be busy for hours."""
+    def _groups(self, kernel: Kernel, number: int, offset: int) -> tuple[int, int, int]:
+        """What a buffer holds by now. A device that is given garbage for counts may be busy for hours."""
         self.flush()
-        groups = self.buffers[number].read()[offset // 4 :][:3]
-        assert groups.max() <= MOST_GROUPS, f"{kernel.name}: is dispatched in {groups} groups"
+        first, second, third = self.buffers[number].read()[offset // 4 :][:3].tolist()
+        assert max(first, second, third) <= MOST_GROUPS, (
+            f"{kernel.name}: is dispatched in {first}, {second}, {third} groups"
+        )
+        return first, second, third
 
     def _bound(self, kernel: Kernel, event: dict[str, Any], name: str, stride: int) -> Buffer:
         """The buffer of a name; Unity asks for the stride of the shader's elements."""

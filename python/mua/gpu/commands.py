@@ -15,8 +15,6 @@ from mua.gpu.kernel import Kernel
 from mua.gpu.timestamps import Timestamps
 from mua.gpu.uniforms import Uniforms
 
-DISPATCH_ARGUMENTS = 12  # bytes: three group counts
-
 
 @dataclass(frozen=True)
 class Bound:
@@ -34,7 +32,6 @@ class _Dispatch:
     group: wgpu.GPUBindGroup
     constants: bytes | None
     groups: tuple[int, int, int]
-    indirect: tuple[Buffer, int] | None  # arguments and offset in bytes, in place of `groups`
 
 
 class Commands:
@@ -50,22 +47,10 @@ class Commands:
     ) -> None:
         """Append a dispatch of `groups`; it runs at `submit`, and not at all with 0 groups."""
         kernel.check_groups(groups)
-        self._append(kernel, groups, None, buffers, constants)
-
-    def dispatch_indirect(
-        self, kernel: Kernel, arguments: Buffer, offset: int, buffers: Mapping[str, Buffer], **constants: Any
-    ) -> None:
-        """Append a dispatch whose three group counts the device reads from `arguments` at `offset` bytes."""
-        if not arguments.indirect:
-            raise InputError(
-                f"kernel {kernel.name}: arguments in {arguments.name}, expected a buffer made with indirect"
-            )
-        if offset % 4 or offset < 0 or offset + DISPATCH_ARGUMENTS > arguments.size:
-            raise InputError(
-                f"kernel {kernel.name}: arguments at byte {offset} of {arguments.name}, "
-                f"expected a multiple of 4 that leaves {DISPATCH_ARGUMENTS} of its {arguments.size} bytes"
-            )
-        self._append(kernel, (0, 0, 0), (arguments, offset), buffers, constants)
+        kernel.check(buffers, constants)
+        packed = kernel.bindings.pack(constants)
+        bound = Bound(kernel.name, {name: buffer.size for name, buffer in buffers.items()}, constants)
+        self._dispatches.append(_Dispatch(bound, kernel, kernel.bindings.group(buffers), packed, groups))
 
     @property
     def bound(self) -> tuple[Bound, ...]:
@@ -74,7 +59,7 @@ class Commands:
 
     def submit(self) -> None:
         """Run all dispatches on the device, without waiting for them; may be called again to run them again."""
-        dispatches = [d for d in self._dispatches if d.indirect or min(d.groups) > 0]
+        dispatches = [d for d in self._dispatches if min(d.groups) > 0]
         placed = iter(self._uniforms.place([d.constants for d in dispatches if d.constants is not None]))
         offsets = [None if d.constants is None else next(placed) for d in dispatches]
         with naming("dispatches"):
@@ -92,23 +77,10 @@ class Commands:
         spent: dict[str, float] = defaultdict(float)
         if self._timestamps is None:
             return spent
-        ran = [d for d in self._dispatches if d.indirect or min(d.groups) > 0]
+        ran = [d for d in self._dispatches if min(d.groups) > 0]
         for dispatch, taken in zip(ran, np.diff(self._timestamps.milliseconds()).tolist(), strict=True):
             spent[dispatch.kernel.name] += max(taken, 0)
         return dict(spent)
-
-    def _append(
-        self,
-        kernel: Kernel,
-        groups: tuple[int, int, int],
-        indirect: tuple[Buffer, int] | None,
-        buffers: Mapping[str, Buffer],
-        constants: Mapping[str, Any],
-    ) -> None:
-        kernel.check(buffers, constants)
-        packed = kernel.bindings.pack(constants)
-        bound = Bound(kernel.name, {name: buffer.size for name, buffer in buffers.items()}, constants)
-        self._dispatches.append(_Dispatch(bound, kernel, kernel.bindings.group(buffers), packed, groups, indirect))
 
     def _encode(self, encoder: wgpu.GPUCommandEncoder, dispatches: list[_Dispatch], offsets: list[int | None]) -> None:
         compute = encoder.begin_compute_pass()
@@ -135,8 +107,4 @@ class Commands:
 def _record(compute: wgpu.GPUComputePassEncoder, dispatch: _Dispatch, offset: int | None) -> None:
     compute.set_pipeline(dispatch.kernel.pipeline)
     compute.set_bind_group(0, dispatch.group, [] if offset is None else [offset])
-    if dispatch.indirect:
-        arguments, start = dispatch.indirect
-        compute.dispatch_workgroups_indirect(arguments.raw, start)
-    else:
-        compute.dispatch_workgroups(*dispatch.groups)
+    compute.dispatch_workgroups(*dispatch.groups)

@@ -35,7 +35,7 @@ class Device:
     def buffer(self, content: Array | int, *, name: str, indirect: bool = False) -> Buffer:
         """A buffer with an array's bytes (any type of at most 4 bytes), or with this number of zero bytes.
 
-        `indirect` lets the device read dispatch and draw arguments from it. InputError if it is too large.
+        `indirect` lets the device read arguments of draws from it. InputError if it is too large.
         """
         return Buffer(self.wgpu, content, name=name, indirect=indirect)
 

@@ -20,7 +20,6 @@ LARGEST = 24_000_000  # bytes of avatars; a third more as text, which browsers h
 DYNAMIC = re.compile(r'await import\("(\.[^"]+)"\)')
 WORKER = re.compile(r'new URL\("(\.[^"]+)", import\.meta\.url\)')
 BOOT = Path(__file__).with_name("single.js")
-ENTRY = "page.js"
 LINES = re.compile(r"^<(?:meta http-equiv|link|script)\b.*\n", re.MULTILINE)  # tags that refer to other files
 
 
