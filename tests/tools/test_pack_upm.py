@@ -4,7 +4,6 @@ import gzip
 import io
 import json
 import tarfile
-from collections.abc import Callable
 from pathlib import Path
 
 import lint_upm
@@ -85,37 +84,37 @@ def test_a_link_becomes_its_text() -> None:
     assert pack_upm.unlinked(page) == b"a shot the page [out](https://host/x) [here](#part)"
 
 
-Change = Callable[[dict[str, bytes]], object]
-CHANGES: dict[str, tuple[Change, str]] = {
-    "missing kernel": (
-        lambda files: files.pop("ComputeShaders/splat_sort.compute"),
-        "ComputeShaders/splat_sort.compute: missing",
+# A file of the package, what is there in place of it, and the fault.
+CHANGES: list[tuple[str, bytes | None, str]] = [
+    ("ComputeShaders/splat_sort.compute", None, "ComputeShaders/splat_sort.compute: missing"),
+    (
+        "ComputeShaders/mlp_matmul.compute",
+        b"#pragma kernel A\n",
+        "ComputeShaders/mlp_matmul.compute: other bytes than in the checkout",
     ),
-    "other kernel": (
-        lambda files: files.update({"ComputeShaders/splat_sort.compute": b"#pragma kernel A\n"}),
-        "ComputeShaders/splat_sort.compute: other bytes than in the checkout",
-    ),
-    "missing meta": (
-        lambda files: files.pop("ComputeShaders.meta"),
+    (
+        "ComputeShaders.meta",
+        None,
         "com.mua.avatar/ComputeShaders: no .meta file, so that Unity ignores it in an installed package",
     ),
-    "stranger": (lambda files: files.update({"Runtime/Notes.txt": b""}), "Runtime/Notes.txt: not in the checkout"),
-    "path of the separate package": (
-        lambda files: files.update({"Runtime/Notes.cs": b'"Packages/com.mua.kernels/x.hlsl"'}),
+    ("Runtime/Notes.txt", b"", "Runtime/Notes.txt: not in the checkout"),
+    (
+        "Runtime/Notes.cs",
+        b'"Packages/com.mua.kernels/x.hlsl"',
         "Runtime/Notes.cs: names Packages/com.mua.kernels/, expected only shaders to, which are rewritten",
     ),
-    "path outside": (
-        lambda files: files.update({"../Notes.txt": b""}),
-        "package/../Notes.txt: path, expected one below package/",
-    ),
-}
+]
+OUTSIDE = ("../Notes.txt", b"", "package/../Notes.txt: path, expected one below package/")
 
 
-@pytest.mark.parametrize(("change", "fault"), CHANGES.values(), ids=list(CHANGES))
-def test_finds_what_is_wrong_inside(files: dict[str, bytes], change: Change, fault: str) -> None:
-    changed = dict(files)
-    change(changed)
-    assert f"x.tgz: {fault}" in pack_upm.faults(pack_upm.pack(changed), "x.tgz")
+@pytest.mark.parametrize("changes", [CHANGES, [OUTSIDE]], ids=["inside", "outside"])
+def test_finds_all_that_is_wrong(files: dict[str, bytes], changes: list[tuple[str, bytes | None, str]]) -> None:
+    changed = {**files, **{name: content for name, content, _ in changes if content is not None}}
+    for name, content, _ in changes:
+        if content is None:
+            del changed[name]
+    found = pack_upm.faults(pack_upm.pack(changed), "x.tgz")
+    assert [fault for _, _, fault in changes if f"x.tgz: {fault}" not in found] == []
 
 
 def member(**fields: object) -> bytes:
