@@ -1,6 +1,7 @@
 """Who only looks installs little: each command's extra brings all that the command may import, and no other does."""
 
 import ast
+import json
 import re
 import sys
 import tomllib
@@ -111,11 +112,9 @@ def test_a_commands_extra_brings_all_that_it_may_import(name: str) -> None:
     assert reached(f"mua.cli.{name}") - BASE <= (brought(extra) if extra in EXTRAS else set()) | few
 
 
-@pytest.mark.parametrize(
-    "module", ["mua.asset", "mua.avatar.decode", "mua.avatar.rendering", "mua.cli.inspect", "mua.cli.pack"]
-)
-def test_reading_and_picturing_on_the_cpu_need_no_extra(module: str) -> None:
-    assert run_bare(f"import {module}") == Ended(0, "", "")
+def test_reading_and_picturing_on_the_cpu_need_no_extra() -> None:
+    modules = "mua.asset, mua.avatar.decode, mua.avatar.rendering, mua.cli.inspect, mua.cli.pack"
+    assert run_bare(f"import {modules}") == Ended(0, "", "")
 
 
 def test_a_picture_by_the_cpu_needs_no_extra(avatar_file: Path, tmp_path: Path) -> None:
@@ -127,45 +126,52 @@ def test_a_picture_by_the_cpu_needs_no_extra(avatar_file: Path, tmp_path: Path) 
         assert image.size == (32, 32)
 
 
-@pytest.mark.parametrize("name", sorted(set(COMMANDS) - {"inspect", "pack"}))
+RUN = """
+import contextlib, importlib, io, json
+answers = {}
+for name, given in json.loads(sys.argv[1]).items():
+    sys.argv[:] = [f"mua-{name}", *given]
+    with contextlib.redirect_stdout(io.StringIO()) as out, contextlib.redirect_stderr(io.StringIO()) as err:
+        try:
+            importlib.import_module(f"mua.cli.{name}").run()
+        except SystemExit as ended:
+            answers[name] = ended.code, out.getvalue(), err.getvalue()
+print(json.dumps(answers))
+"""
+
+
 def test_a_missing_extra_is_told_with_the_command_that_brings_it(
-    name: str, written: Path, avatar_file: Path, tmp_path: Path
+    written: Path, avatar_file: Path, tmp_path: Path
 ) -> None:
-    given = {"bake": (), "eval": (written,), "train": (written,), "view": (avatar_file, "-o", "a.png")}
-    given["export"] = (avatar_file, "-o", "a.glb")
     (tmp_path / "capture.json").touch()
-    given["capture"] = ("check", tmp_path)
-    given["teach"] = (tmp_path,)
-    given["share"] = (avatar_file, "-o", "shared")
-    code = f"sys.argv[0] = 'mua-{name}'\nfrom mua.cli.{name} import run\nrun()"
-    ended = run_bare(code, *given.get(name, (avatar_file,)))
-    matched = re.fullmatch(
-        r"error: mua-(\w+) needs the Python package (\w+), which is not here: "
-        rf'{re.escape(sys.executable)} -m pip install -e "{PACKAGE.parent}\[(\w+)\]"\n',
-        f"{ended.sentence}\n",
-    )
-    assert matched, ended
-    assert ended.out == ""
-    assert (matched[1], matched[3]) == (name, OF_COMMAND.get(f"mua-{name}", name))
-    assert matched[2] in EXTRAS[matched[3]]
+    given: dict[str, tuple[str | Path, ...]] = dict.fromkeys(set(COMMANDS) - {"inspect", "pack"}, (avatar_file,))
+    given |= {"bake": (), "eval": (written,), "train": (written,), "view": (avatar_file, "-o", "a.png")}
+    given |= {"export": (avatar_file, "-o", "a.glb"), "share": (avatar_file, "-o", "shared")}
+    given |= {"capture": ("check", tmp_path), "teach": (tmp_path,)}
+    ended = run_bare(RUN, json.dumps(given, default=str))
+    assert ended.err == ""
+    answers = {name: Ended(*answer) for name, answer in json.loads(ended.out).items()}
+    assert set(answers) == set(given)
+    for name, answer in answers.items():
+        matched = re.fullmatch(
+            r"error: mua-(\w+) needs the Python package (\w+), which is not here: "
+            rf'{re.escape(sys.executable)} -m pip install -e "{PACKAGE.parent}\[(\w+)\]"',
+            answer.sentence,
+        )
+        assert matched, answer
+        assert answer.out == ""
+        assert (matched[1], matched[3]) == (name, OF_COMMAND.get(f"mua-{name}", name))
+        assert matched[2] in EXTRAS[matched[3]]
 
 
-@pytest.mark.parametrize(
-    ("call", "extra"),
-    [
-        ("mua.bake()", "bake"),
-        ("mua.train(sys.argv[1])", "train"),
-        ("mua.Recording(sys.argv[1])", "train"),
-        ("mua.TeacherWriter", "train"),
-        ("mua.load_rig('hero.glb')", "bake"),
-    ],
-)
-def test_a_function_that_lacks_an_extra_names_it(call: str, extra: str, written: Path) -> None:
-    ended = run_bare(f"import mua\ntry:\n    {call}\nexcept ModuleNotFoundError as error:\n    print(error)", written)
-    assert re.fullmatch(
-        rf'{call.partition("(")[0]} needs the Python package \w+, which is not here: .*\[{extra}\]"\n',
-        ended.out,
-    ), ended
+def test_a_function_that_lacks_an_extra_names_it(written: Path) -> None:
+    calls = {"mua.bake()": "bake", "mua.train(sys.argv[1])": "train", "mua.Recording(sys.argv[1])": "train"}
+    calls |= {"mua.TeacherWriter": "train", "mua.load_rig('hero.glb')": "bake"}
+    code = "".join(f"try:\n    {call}\nexcept ModuleNotFoundError as error:\n    print(error)\n" for call in calls)
+    lines = run_bare(f"import mua\n{code}", written).out.splitlines()
+    for line, (call, extra) in zip(lines, calls.items(), strict=True):
+        named = call.partition("(")[0]
+        assert re.fullmatch(rf'{named} needs the Python package \w+, which is not here: .*\[{extra}\]"', line)
 
 
 def test_a_command_that_few_ask_more_of_names_both_extras(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
