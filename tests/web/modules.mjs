@@ -2,6 +2,7 @@
 //   answers        a line for each file: ok, or code, field and sentence as JSON
 //   mutants        the same of files on the standard input, each after its length as four bytes, that also arrive in steps;
 //                  and the most bytes that this process has taken by then
+//   measured RUNS  of a file that is read so often: seconds of the processor and by the clock, and the most bytes that the first took
 //   values FRAMES  of the file's first clip, those frames: descriptors, components, joints, boxes; and what the kernels read
 //   expressions FRAMES  of a file: their names, what they move, the reach at every level, weights at frames of the first clip and what shows
 //   stages STEP    of a file that arrives in such steps: how much was there, and what it shows, or code and field of the fault
@@ -220,6 +221,21 @@ async function stages(content, step) {
   return found;
 }
 
+/** What reading a file takes, so many times. */
+async function measured(file, runs) {
+  const [before, seconds, waited] = [status("VmRSS"), [], []];
+  let taken = 0;
+  for (let run = 0; run < runs; run++) {
+    const [start, began] = [process.cpuUsage(), performance.now()];
+    await read(bytes(file));
+    waited.push((performance.now() - began) / 1e3);
+    const { user, system } = process.cpuUsage(start);
+    seconds.push((user + system) / 1e6);
+    taken ||= peak() - before;
+  }
+  return [seconds, waited, taken];
+}
+
 /** Whether the rest is expected soon, after each 100 ms. */
 function soon(total, bytes) {
   const download = new Download("http://localhost/a.muaavatar");
@@ -315,6 +331,7 @@ if (what === "retarget") say(await retargeted(skeletonOf(given[0]), given[1], JS
 if (what === "live") say(followed(skeletonOf(given[0]), JSON.parse(readFileSync(given[1], "utf8"))));
 if (what === "turns") say(turns(linesOf(given[0])));
 if (what === "budget") say(budgeted(linesOf(given[0])));
+if (what === "measured") say(await measured(given[0], Number(given[1])));
 if (what === "soon") say(soon(...given.slice(0, 1), given.slice(1).map(Number)));
 if (what === "stages") for (const one of await stages(bytes(given[0]), Number(given[1]))) say(one);
 if (what === "answers") for (const file of given) say(await answer(bytes(file)));

@@ -33,6 +33,9 @@ internal static class FormatProgram
                     Console.WriteLine(Answer(File.ReadAllBytes(path)));
                 }
                 return 0;
+            case "measured":
+                Measure(arguments[1], int.Parse(arguments[2]));
+                return 0;
             case "truncate":
                 for (int length = 0; length < content.Length; length++)
                 {
@@ -77,6 +80,34 @@ internal static class FormatProgram
         {
             Console.WriteLine(Digest(reader.ReadBytes(BitConverter.ToInt32(length, 0))));
         }
+    }
+
+    /// <summary>Reads a file so many times: for each, seconds of the processor and by the clock; the most bytes of the first.</summary>
+    private static void Measure(string path, int runs)
+    {
+        long before = Status("VmRSS:"), taken = 0;
+        var process = System.Diagnostics.Process.GetCurrentProcess();
+        List<string> seconds = new List<string>(), waited = new List<string>();
+        for (int run = 0; run < runs; run++)
+        {
+            process.Refresh();
+            double start = process.TotalProcessorTime.TotalSeconds;
+            var clock = System.Diagnostics.Stopwatch.StartNew();
+            AvatarFile avatar = AvatarFile.Read(File.ReadAllBytes(path));
+            waited.Add(clock.Elapsed.TotalSeconds.ToString("F3"));
+            process.Refresh();
+            seconds.Add((process.TotalProcessorTime.TotalSeconds - start).ToString("F3"));
+            taken = run == 0 ? Status("VmHWM:") - before : taken;
+            GC.KeepAlive(avatar);
+        }
+        Console.WriteLine("[[" + string.Join(", ", seconds) + "], [" + string.Join(", ", waited) + "], " + taken + "]");
+    }
+
+    /// <summary>A line of what Linux says of this process, bytes.</summary>
+    private static long Status(string name)
+    {
+        string line = File.ReadLines("/proc/self/status").First(one => one.StartsWith(name));
+        return 1024 * long.Parse(line.Substring(name.Length).Replace("kB", ""));
     }
 
     /// <summary>The bytes that reading takes, then the answer, for a sound file with a digest of all its values.</summary>
