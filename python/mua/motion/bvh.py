@@ -139,8 +139,8 @@ def _parse_motion(path: Path, lines: list[str], width: int) -> tuple[float, int,
         raise InputError(f"{path}: Frames: expected at least 1 frame, found {count:g}")
     if not 0 < frame_time <= SLOWEST:
         raise InputError(
-            f"{path}: Frame Time: expected seconds above 0 and up to {SLOWEST:g}, found {frame_time:g}; write 0.0333333 "
-            "there for 30 frames per second"
+            f"{path}: Frame Time: expected seconds above 0 and up to {SLOWEST:g}, found {frame_time:g}; write "
+            "0.0333333 there for 30 frames per second"
         )
     values = _numbers(path, "MOTION", " ".join(rows[2:]).split())
     whole_lines = len(rows) > 2 and all(len(row.split()) == width for row in rows[2:])
