@@ -83,12 +83,12 @@ def finite_array(values: Any, name: str, shape: tuple[int | None, ...]) -> Array
 
 
 def unit_quaternions(values: Any, name: str, shape: tuple[int | None, ...]) -> Array:
-    """Unit quaternions of `shape` as float64; raises InputError for anything else."""
+    """Quaternions of `shape` as float64, brought to length 1 where they are of another; raises InputError for zeros."""
     quaternions = finite_array(values, name, shape)
-    lengths = np.linalg.norm(quaternions, axis=-1).ravel()
-    if len(lengths) and np.abs(lengths - 1).max() > UNIT_BOUND:
-        raise InputError(f"{name}: a quaternion of length {lengths[np.abs(lengths - 1).argmax()]:.4g}, expected 1")
-    return quaternions
+    lengths = np.linalg.norm(quaternions, axis=-1, keepdims=True)
+    if not lengths.all():
+        raise InputError(f"{name}: a quaternion is 0 0 0 0, expected a rotation")
+    return np.where(np.abs(lengths - 1) > UNIT_BOUND, quaternions / lengths, quaternions)
 
 
 def describe(value: object) -> str:

@@ -249,7 +249,7 @@ def test_braces_in_the_name_of_the_folder_are_no_fields(tmp_path: Path, command:
         ({"parents": np.arange(55)[::-1]}, "parents: a joint comes before its parent"),
         ({"parents": np.full(55, 99)}, "parents: expected whole numbers of -1 to 54"),
         ({"root": 60}, "root: expected whole numbers of 0 to 54"),
-        ({"rotations": np.zeros((1, 55, 4))}, "rotations: a quaternion of length 0"),
+        ({"rotations": np.zeros((1, 55, 4))}, "rotations: a quaternion is 0 0 0 0"),
         ({"translations": np.zeros((3, 55, 3))}, r"translations: the shape is \[3, 55, 3\]"),
         ({"rate": 0}, "has 1 poses at 0 frames per second"),
     ],

@@ -23,6 +23,14 @@ def test_greys_of_any_depth_are_the_same(tmp_path: Path, dtype: type) -> None:
     np.testing.assert_array_equal(decode_image(file.read_bytes())[..., 0], GREY)
 
 
+def test_a_mask_that_is_painted_in_labels_covers_all_of_them(tmp_path: Path) -> None:
+    """Segmentation tools paint the first person dark red, the next dark green."""
+    file, painted = tmp_path / "mask.png", Image.fromarray(np.array([[0, 1, 1], [2, 0, 0]], np.uint8))
+    painted.putpalette([0, 0, 0, 128, 0, 0, 0, 128, 0])
+    painted.save(file)
+    np.testing.assert_array_equal(read_mask(file, number=0, size=SIZE)[..., 0], [[0, 255, 255], [255, 0, 0]])
+
+
 @pytest.mark.parametrize("mode", ["RGB", "RGBA", "P"])
 def test_colours_are_read_with_the_alpha_that_the_file_has(tmp_path: Path, mode: str) -> None:
     file, colours = tmp_path / "a.png", np.stack([GREY, GREY[:, ::-1], GREY // 2], axis=2)

@@ -221,3 +221,15 @@ def test_names_a_target_that_is_no_node(tmp_path: Path) -> None:
     glb.json["animations"][0]["channels"][1]["target"]["node"] = 9
     with pytest.raises(InputError, match=r"animations\[0\]\.channels\[1\]\.target\.node is 9"):
         read(glb, tmp_path)
+
+
+@pytest.mark.parametrize("begins_turned", [False, True])
+def test_motion_is_turned_to_the_front_only_where_its_clips_begin_as_it_rests(
+    tmp_path: Path, begins_turned: bool
+) -> None:
+    """Files without a mesh may rest in any moment of a dance, which says nothing about where their motion faces."""
+    aside = [0, 0, 0.5**0.5, 0.5**0.5]  # a quarter turn about the Z of the joints, which leads up
+    glb = rig(skin=False, mesh=False, moved=0)
+    glb.json["nodes"][HIPS]["rotation"] = aside
+    animate(glb, HIPS, "rotation", times=[0, 1], values=[aside if begins_turned else [0, 0, 0, 1], aside])
+    assert any("turned by 270" in note for note in read(glb, tmp_path).notes) is begins_turned

@@ -298,7 +298,9 @@ def test_frames_are_spread_over_all_clips(tmp_path: Path) -> None:
     clip = column(tmp_path).clips[0]
     short = replace(clip, name="short", rotations=clip.rotations[:1], translations=clip.translations[:1])
     chosen = spread([clip, short], 3)
-    assert [(c.name, frame) for c, frame in chosen] == [("bend", 5), ("bend", 16), ("bend", 26)]
+    assert [(c.name, frame) for c, frame in chosen] == [("bend", 5), ("bend", 15), ("bend", 25)]
+    still = replace(clip, name="T-pose", rotations=clip.rotations[:1].repeat(200, axis=0))
+    assert spread([still, clip, short], 3) == chosen
     assert spread([short], 3) == [(short, 0)]
     assert spread([], 3) == []
 

@@ -62,6 +62,10 @@ def test_numpys_numbers_do_for_frames_and_names_for_element_types() -> None:
     assert AVATAR.decode(WAVE.name, frame, dtype="float64").centres.dtype == np.float64
 
 
+def test_quaternions_of_another_length_are_the_same_rotations() -> None:
+    np.testing.assert_array_equal(AVATAR.decode(_turned(2.0)).centres, AVATAR.decode(_turned(4.0)).centres)
+
+
 @pytest.mark.parametrize("rate", [10.0, 24.0, 60.0])
 def test_a_clip_of_another_rate_is_resampled_to_the_avatars(rate: float) -> None:
     other = replace(WAVE, rate=rate)
@@ -110,7 +114,7 @@ WRONG: dict[str, tuple[Callable[[], object], str]] = {
     "a number as path": (lambda: mua.load(3), r"path is 3 \(int\); expected a path, as a str or an os\.PathLike"),  # type: ignore[arg-type]
     "bytes as path": (lambda: mua.load(b"a"), "expected a path, as a str"),  # type: ignore[arg-type]
     "no path of any system": (lambda: mua.load("a\0b"), "expected a path, as a str"),
-    "no such file": (lambda: mua.load("none.muaavatar"), r"none\.muaavatar: No such file"),
+    "no such file": (lambda: mua.load("none.muaavatar"), r"none\.muaavatar: there is no such file"),
     "storage": (lambda: mua.save("a", AVATAR, storage="f8"), "storage is 'f8'; expected f32 or f16 or i8"),  # type: ignore[arg-type]
     "no avatar to save": (lambda: mua.save("a", "b"), "avatar is 'b'; expected a mua.Avatar"),  # type: ignore[arg-type]
     "an empty path": (lambda: mua.load(""), "path is ''; expected a path, as a str"),
@@ -137,7 +141,7 @@ WRONG: dict[str, tuple[Callable[[], object], str]] = {
         lambda: AVATAR.decode(_turned(translations=WAVE.translations[1:])),
         r"translations of clip 'wave': the shape is .*, expected \[",
     ),
-    "no unit quaternion": (lambda: AVATAR.decode(_turned(2.0)), "a quaternion of length 2, expected 1"),
+    "no rotation": (lambda: AVATAR.decode(_turned(0.0)), "a quaternion is 0 0 0 0, expected a rotation"),
     "not finite": (lambda: AVATAR.decode(_turned(np.nan)), "rotations of clip 'wave': a value is not finite"),
     "rows of several lengths": (
         lambda: AVATAR.decode([mua.Pose([[1.0, 0, 0, 0], [1.0]], np.zeros((3, 3)))] * 3),  # type: ignore[arg-type]

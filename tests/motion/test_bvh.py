@@ -321,6 +321,7 @@ def test_reads_headers_however_they_are_spaced(tmp_path: Path) -> None:
         ("Frames: 2\n", "", "Frames:"),
         ("Frame Time: 0.04", "Frame Time: 0", "Frame Time"),
         ("Frame Time: 0.04", "Frame Time: -1", "Frame Time"),
+        ("Frame Time: 0.04", "Frame Time: 30", "Frame Time: expected seconds above 0 and up to 5, found 30"),
         ("Frame Time: 0.04\n", "", "Frame Time"),
         ("5 6 -7 45", "5 6 -7", "found 19 values"),
         ("5 6 -7 45", "5 6 -7 nan", "finite"),

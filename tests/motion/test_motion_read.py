@@ -34,7 +34,13 @@ def test_refuses_what_holds_no_motion(tmp_path: Path, name: str, says: str) -> N
 
 @pytest.mark.parametrize(
     ("name", "says"),
-    [("a.pkl", "may run code"), ("a.NPY", "numpy.savez"), ("a.c3d", "markers"), ("a.amc", "export it as BVH")],
+    [
+        ("a.pkl", "may run code"),
+        ("a.NPY", "numpy.savez"),
+        ("a.c3d", "markers"),
+        ("a.trc", "mua-capture poses"),
+        ("a.amc", "export it as BVH"),
+    ],
 )
 def test_says_how_to_convert_motion_of_other_kinds(tmp_path: Path, name: str, says: str) -> None:
     (tmp_path / name).write_bytes(b"\x80\x04")

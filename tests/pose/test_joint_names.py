@@ -22,6 +22,8 @@ ARM = ("left shoulder", "left upper_arm", "left forearm", "left hand")
         (("mixamorig:LeftShoulder", "mixamorig:LeftArm", "mixamorig:LeftForeArm", "mixamorig:LeftHand"), ARM),
         (("lfemur", "ltibia", "lfoot", "ltoes"), LEG),
         (("lclavicle", "lhumerus", "lradius", "lhand"), ARM),
+        (("BackLegUpper_L", "BackLegLower_L", "BackLegAnkle_L", "BackLegFoot_L"), LEG),
+        (("FrontLegShoulder_L", "FrontLegUpper_L", "FrontLegLower_L", "FrontLegAnkle_L"), ARM),
         (("left_hip", "left_knee", "left_ankle", "left_foot"), LEG),
         (("left_collar", "left_shoulder", "left_elbow", "left_wrist"), ARM),
         (("thigh_l", "calf_l", "foot_l", "ball_l"), LEG),

@@ -348,6 +348,18 @@ def test_what_is_added_to_colours_costs_nothing_of_itself() -> None:
         assert float(image_loss(torch.tensor([0]), torch.ones(1, 3))) == pytest.approx(0.25, rel=0.01)
 
 
+def test_a_texel_that_no_image_shows_is_drawn_to_the_colour_of_its_neighbours() -> None:
+    alone = LossWeights(l1=0, ssim=0, alpha=0, residual=0)
+    image_loss = ImageLoss(teacher(), material(), replace(SETTINGS, weights=alone))
+    mean, (one, other) = image_loss.teacher.mean, image_loss.teacher.nets.surface.neighbours
+    with torch.no_grad():
+        mean[one[0]] = 1.0
+    image_loss(torch.tensor([0]), torch.ones(1, 3), False).backward()
+    assert mean.grad is not None
+    assert (mean.grad[one[0]] > 0).all()
+    assert (mean.grad[other[0]] < 0).all()
+
+
 @torch.no_grad()
 def test_what_all_cameras_share_is_no_cameras_own_colour() -> None:
     image = torch.rand(4, 5, 4, generator=torch.Generator().manual_seed(0))

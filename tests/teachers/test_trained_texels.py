@@ -6,7 +6,7 @@ import torch
 from small_teachers import motion, subject, teacher
 
 from mua.splatting.posing import rotate
-from mua.teachers.trained.texels import SurfaceTextures, TexelNets, normals
+from mua.teachers.trained.texels import SurfaceTextures, TexelNets, neighbours, normals
 from mua.teachers.trained.unet import UNet
 from mua.texture.surfels import vertex_normals
 
@@ -103,3 +103,9 @@ def test_a_unet_begins_at_zero_and_sees_far(levels: int) -> None:
     (gradient,) = torch.autograd.grad(net(image)[0, :, 16, 16].sum(), image)
     reach = int(torch.nonzero(gradient[0].abs().sum(dim=0))[:, 0].sub(16).abs().max())
     assert reach >= 2**levels
+
+
+def test_texels_are_neighbours_where_they_touch_in_the_texture() -> None:
+    """Of a texture of 3 x 3, the corners above and the row in the middle."""
+    pairs = neighbours(torch.tensor([0, 2, 3, 4, 5]), 3)
+    assert sorted(map(tuple, pairs.T.tolist())) == [(0, 2), (1, 4), (2, 3), (3, 4)]

@@ -68,7 +68,7 @@ class Avatar(Model):
         if isinstance(clip, str):
             clip = self.clip(clip)
         if isinstance(clip, Clip):
-            self._check_clip(clip, number)
+            clip = self._checked(clip, number)
             if named is not None:
                 clip = replace(clip, expressions=np.broadcast_to(named, (len(clip), len(named))))
             return decode_clip_frame(self, clip, frame=number, dtype=element)
@@ -131,7 +131,8 @@ class Avatar(Model):
             f"{len(texels.texels):,} splats of {texels.size} x {texels.size} texels, {clips}>"
         )
 
-    def _check_clip(self, clip: Clip, frame: int) -> None:
+    def _checked(self, clip: Clip, frame: int) -> Clip:
+        """The clip with quaternions of length 1."""
         joints, of = len(self.rig.skeleton.names), f"of clip {clip.name!r}"
         rotations = unit_quaternions(clip.rotations, f"rotations {of}", (None, joints, 4))
         finite_array(clip.translations, f"translations {of}", (len(rotations), joints, 3))
@@ -144,6 +145,7 @@ class Avatar(Model):
         count = frames_at(clip, self.encoding.rate)
         if not 0 <= frame < count:
             raise InputError(f"frame is {frame}; clip {clip.name!r} has frames 0 to {count - 1}")
+        return replace(clip, rotations=rotations)
 
     def _window(self, poses: Sequence[Pose]) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
         """Rotations [k, J, 4] and translations [k, J, 3]."""

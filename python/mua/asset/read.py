@@ -15,6 +15,7 @@ from mua.asset.read_rig import read_rig, read_skeleton, read_surface, read_trans
 from mua.asset.sizes import require_sizes
 from mua.asset.tensors import indices, reals, some_reals, unit_quaternions
 from mua.errors import InputError
+from mua.files.inputs import require_file
 from mua.limits import LARGEST_RATE, LEAST_RATE, LEAST_SCALE, MAX_ADDED, MAX_FRAMES, MAX_WINDOW, STAGES
 from mua.pose.clip import Clip
 from mua.pose.encoding import Components, Normalization, PoseEncoding
@@ -45,6 +46,7 @@ def load(path: PathLike) -> Tree:
     Errors: InputError naming the file and field.
     """
     path = as_path(path, "path")
+    require_file(path)
     try:
         content = path.read_bytes()
     except OSError as error:

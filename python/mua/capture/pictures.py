@@ -10,6 +10,7 @@ from mua.atlas.pictures import in_8_bits
 from mua.capture.video import VIDEOS, MissingImage, video_frame
 from mua.errors import InputError
 
+GREY, DARK = 64, 32  # differences between red, green and blue that compression makes of greys; what it makes of black
 TURNED, ON_SIDE = range(2, 9), range(5, 9)  # orientations of EXIF: turned or mirrored at all, by a quarter turn
 
 
@@ -79,9 +80,15 @@ def read_mask(path: Path, *, number: int, size: tuple[int, int]) -> Array:
 def as_mask(
     picture: Array,  # [H, W, 3 or 4] uint8
 ) -> Array:
-    """Cover [H, W, 1] uint8: alpha of a cut-out, else brightness; nothing but 0 and 1 is taken for 0 and 255."""
-    cut_out = picture.shape[2] == 4 and np.ptp(picture[..., 3]) > 0
-    cover = picture[..., 3:] if cut_out else picture[..., :3].max(axis=2, keepdims=True)
+    """Cover [H, W, 1] uint8: alpha of a cut-out, all that colours paint, else brightness; 0 and 1 for 0 and 255."""
+    if picture.shape[2] == 4 and np.ptp(picture[..., 3]) > 0:
+        cover = picture[..., 3:]
+    else:
+        red, green, blue = np.moveaxis(picture[..., :3], 2, 0)
+        cover = np.maximum(np.maximum(red, green), blue)[..., None]
+        least = np.minimum(np.minimum(red, green), blue)[..., None]
+        if (cover - least).max() > GREY:  # labels of people or parts of a body, dark red for the first in many tools
+            return np.where(cover > DARK, np.uint8(255), np.uint8(0))
     return cover * np.uint8(255) if cover.max() == 1 else cover
 
 

@@ -45,7 +45,7 @@ AS_SHOWN = Facing()
 def faced(scene: Scene, bind: Bind, facing: Facing, *, surface: Array | None) -> tuple[Scene, float, tuple[str, ...]]:
     """The scene with true sides, the degrees about +Y that make it face +Z, and sentences on both.
 
-    `surface` [J, 3] is the middle of what each joint carries.
+    `surface` [J, 3] is the middle of what each joint carries; None where the file holds motion alone.
     """
     found = roles_in(scene, bind)
     across, certain = _across(scene, bind, found)
@@ -54,7 +54,10 @@ def faced(scene: Scene, bind: Bind, facing: Facing, *, surface: Array | None) ->
         degrees = -AZIMUTHS[facing.towards]
     elif across.any():
         swapped = not certain and evidence(_figure(scene, bind, found, surface), across) < 0
+        seen = across if surface is not None else _across_at_first(scene, bind, found, across)
         degrees = _quarter_turn(-across if swapped else across)
+        if degrees != _quarter_turn(-seen if swapped else seen):
+            degrees = 0.0  # motion whose rest pose is a moment of another
     notes = () if facing.towards or not degrees else (TURNED.format(f"{degrees % 360:.0f}"),)
     degrees += facing.turn
     if facing != AS_SHOWN:  # the user says where the front is, and so which side is left
@@ -98,6 +101,14 @@ def _across(scene: Scene, bind: Bind, found: Roles) -> tuple[Array, bool]:
         if side == SIDE_NAMES[0] and f"right {part}" in stated:
             across += bind.places[found[role][0]] - bind.places[found[f"right {part}"][0]]
     return (across, True) if across.any() else (_across_by_names(scene, bind), False)
+
+
+def _across_at_first(scene: Scene, bind: Bind, found: Roles, at_rest: Array) -> Array:
+    """The way [3] from right joints to left ones summed over the clips' first frames; at rest where there is none."""
+    firsts = [
+        replace(bind, places=motion.worlds[0, bind.nodes, :3, 3]) for motion in scene.motions if len(motion.worlds)
+    ]
+    return sum((_across(scene, first, found)[0] for first in firsts), np.zeros(3)) if firsts else at_rest
 
 
 def _across_by_names(scene: Scene, bind: Bind) -> Array:

@@ -26,6 +26,7 @@ from mua.teachers.simulated.still import StillTeacher
 
 NEAR_BY = 6.0  # pixels about a place within which the nearest surface names the joint
 POSED = 3  # frames of the clips beside the pose of the file
+STILL = 0.01  # of a quaternion's numbers: about a degree, less than breathing turns a chest
 ROUND = {"front": 0.0, "left": 90.0, "back": 180.0, "front, right": -40.0}  # degrees round the figure
 IN_MOTION = ("front, right", -40.0), ("back, left", 140.0)  # one side for each frame, in turn
 
@@ -114,8 +115,12 @@ def sittings_of(character: Character, clips: Sequence[Clip], source: Source) -> 
 
 
 def spread(clips: Sequence[Clip], count: int) -> list[tuple[Clip, int]]:
-    """At most `count` frames, each in the middle of its share of all clips one after the other."""
-    frames = [(clip, frame) for clip in clips for frame in range(len(clip))]
+    """At most `count` frames, each in the middle of its share of all clips one after the other.
+
+    Clips that stand still, such as the T-pose of a library, have no share where others move.
+    """
+    moving = [clip for clip in clips if np.ptp(clip.rotations, axis=0).max() > STILL]
+    frames = [(clip, frame) for clip in moving or clips for frame in range(len(clip))]
     count = min(count, len(frames))
     return [frames[int((i + 0.5) * len(frames) / count)] for i in range(count)]
 

@@ -23,6 +23,7 @@ UNITS = (1.0, 0.01, 0.001, 0.1, 0.0254)  # metres per unit, the likeliest first
 PERSON_SPAN = (1.7, 3.2)  # metres along the bones from fingertip to toe, child to giant
 TYPICAL_SPAN = 2.35
 HELD = 1e-4  # of the span: a joint whose place in its parent changes by less keeps the mean
+SLOWEST = 5.0  # seconds between frames; more are frames per second or milliseconds in their place
 WHOLE_RATE = 1e-3  # relative: 0.033333 s means 30 frames per second
 MOST = 0.5  # share of frames with heads above feet along Z or X, rather than Y, from which on it is up
 ON_HEAD = 0.9  # of the frames that have heads below feet: more than any handstand is of its clip
@@ -136,10 +137,10 @@ def _parse_motion(path: Path, lines: list[str], width: int) -> tuple[float, int,
     frame_time = _header(path, rows, 1, "Frame Time:")
     if count < 1 or count != int(count):
         raise InputError(f"{path}: Frames: expected at least 1 frame, found {count:g}")
-    if frame_time <= 0:
+    if not 0 < frame_time <= SLOWEST:
         raise InputError(
-            f"{path}: Frame Time: expected seconds above 0, found {frame_time:g}; write 0.0333333 there for 30 frames "
-            "per second"
+            f"{path}: Frame Time: expected seconds above 0 and up to {SLOWEST:g}, found {frame_time:g}; write "
+            "0.0333333 there for 30 frames per second"
         )
     values = _numbers(path, "MOTION", " ".join(rows[2:]).split())
     whole_lines = len(rows) > 2 and all(len(row.split()) == width for row in rows[2:])

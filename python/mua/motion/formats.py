@@ -13,10 +13,16 @@ ADVICE = {  # for other kinds of motion files
     **dict.fromkeys(
         (".pkl", ".pickle", ".pt", ".pth"), f"opening it may run code; where you trust it, open it and {SAVE_NPZ}"
     ),
-    ".npy": f"it holds one array without names; {SAVE_NPZ}",
-    **dict.fromkeys((".c3d", ".trc", ".tsv"), "markers have no joints; solve a skeleton and export it as BVH"),
+    ".npy": f"it holds one array without names; if that is rotations of SMPL, {SAVE_NPZ}; places of joints, as in "
+    "HumanML3D, need a body model fitted to them first",
+    ".trc": "pose the character by its keypoints with mua-capture poses, and give that .npz",
+    **dict.fromkeys((".c3d", ".tsv"), "markers have no joints; solve a skeleton and export it as BVH"),
+    ".mvnx": "export it from Xsens MVN as BVH or FBX",
+    ".anim": "export it from Unity as FBX",
     ".csv": "one of Live Link Face holds a face alone (mua-bake --face); of markers, solve a skeleton and export a BVH",
-    **dict.fromkeys((".asf", ".amc", ".htr", ".vmd"), "import it in Blender or MotionBuilder and export it as BVH"),
+    ".vmd": "import it in Blender on a model of MikuMikuDance (by the add-on mmd_tools), bake the legs' constraints "
+    "and export it as BVH",
+    **dict.fromkeys((".asf", ".amc", ".htr"), "import it in Blender or MotionBuilder and export it as BVH"),
 }
 
 

@@ -71,8 +71,20 @@ _SIDED = {
     )
     for part, names in _FINGER_NAMES.items()
 }
+_ANIMAL = {  # forelegs are the arms
+    "shoulder": ("frontlegshoulder",),
+    "upper_arm": ("frontlegupper",),
+    "forearm": ("frontleglower",),
+    "hand": ("frontlegankle", "frontlegfoot", "frontpaw"),
+    "thigh": ("backlegupper",),
+    "shin": ("backleglower",),
+    "ankle": ("backlegankle",),
+    "foot": ("backlegfoot", "backpaw"),
+}
 CENTRAL_PART = {name: part for part, names in _CENTRAL.items() for name in names} | FOREIGN_CENTRAL
-SIDED_PART = {name: part for part, names in _SIDED.items() for name in names} | FOREIGN_SIDED
+SIDED_PART = {
+    name: part for table in (_SIDED, _ANIMAL) for part, names in table.items() for name in names
+} | FOREIGN_SIDED
 SIDE = {"left": "left", "l": "left", "right": "right", "r": "right"}
 NO_PART = {  # words that say nothing about where a joint is; a letter may count, as in spineA, spineB
     *("bind", "jnt", "joint", "bone", "bend", "stretch", "m", "x"),

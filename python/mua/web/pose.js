@@ -37,7 +37,7 @@ export function poseFrom({ skeleton, expressions }, given) {
   const turned = spread("rotations", rotations, names, outward(bindRotations));
   const moved = spread("translations", translations, names, Float64Array.from(bindTranslations));
   const still = names.findIndex((_, joint) => !turned.slice(4 * joint, 4 * joint + 4).some(Boolean));
-  if (still >= 0) throw fault(`rotations: ${names[still]} is 0 0 0 0, expected a unit quaternion`);
+  if (still >= 0) throw fault(`rotations: ${names[still]} is 0 0 0 0, expected a rotation`);
   const pose = { rotations: inward(turned), translations: Float64Array.from(moved) };
   if (!weights) return pose;
   checkNumbers("expressions", weights, expressions.length, `one of each expression of the avatar`);

@@ -59,7 +59,7 @@ test("what a skeleton says of its bind pose is a pose", () => {
 for (const [given, message] of [
   [{ rotations: [0, 0, 0, 1] }, "rotations holds 4 numbers, expected 8: 4 of each of 2 joints"],
   [{ rotations: [0, 0, 0, 1, 0, NaN, 0, 1] }, "rotations: expected finite numbers, found NaN"],
-  [{ rotations: [0, 0, 0, 1, 0, 0, 0, 0] }, "rotations: Spine is 0 0 0 0, expected a unit quaternion"],
+  [{ rotations: [0, 0, 0, 1, 0, 0, 0, 0] }, "rotations: Spine is 0 0 0 0, expected a rotation"],
   [{ rotations: { Chest: [0, 0, 0, 1] } }, 'rotations: the avatar has no joint "Chest", only Hips, Spine'],
   [{ rotations: { Spine: [0, 0, 1] } }, "rotations: Spine holds 3 numbers, expected 4: x, y, z, w"],
   [{ rotations: { Spine: null } }, "rotations: Spine holds no numbers, expected 4: x, y, z, w"],

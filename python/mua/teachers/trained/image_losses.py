@@ -11,7 +11,7 @@ from mua.rig.bones import figure_scale
 from mua.splatting.projection import TorchSplats
 from mua.splatting.ssim import structural_similarity
 from mua.teachers.trained.colour_correction import ColourCorrection
-from mua.teachers.trained.model import Frame, TeacherModel, draw_views
+from mua.teachers.trained.model import CONSTANT, Frame, TeacherModel, draw_views
 from mua.teachers.trained.pose_refinement import PoseRefinement
 from mua.teachers.trained.settings import TeacherSettings
 from mua.teachers.trained.template_training import UNIT
@@ -122,6 +122,9 @@ class ImageLoss(nn.Module):
     def _regularisation(self, frame: Frame, index: int) -> Tensor:
         """Regularisation: keeps near zero what the images do not determine."""
         loss = self._weights.residual * frame.added[:, GEOMETRY].square().mean()
+        teacher, colours = self.teacher, slice(CONSTANT.start, None)
+        painted = frame.texture[:, colours] - teacher.surfels[:, colours]
+        loss = loss + self._weights.smooth * teacher.nets.surface.roughness(painted)
         beside = self.looks[index].square().sum()
         if self.refinement is not None:
             beside = beside + self.refinement.size()

@@ -19,6 +19,7 @@ class LossWeights:
     perceptual: float = 0.1  # LPIPS, where its weights are given
     tracks: float = 0.02  # squared distance of tracked points in centimetres on a person, where there are tracks
     residual: float = 1e-3  # square of what the networks add to the geometry, in `texels.UNITS`
+    smooth: float = 3e-3  # squared difference between neighbouring texels of what is added to the surfels' colours
     beside: float = 1e-2  # square of frames' codes and of the refinement of poses
     correction: float = 0.1  # squared difference of a camera's colours from the others'
 

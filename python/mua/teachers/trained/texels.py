@@ -25,6 +25,7 @@ class SurfaceTextures(nn.Module):
     barycentrics: Tensor  # [N, 3]
     faces: Tensor  # [F, 3]
     texels: Tensor  # [N] row * size + column
+    neighbours: Tensor  # [2, P] texels of each pair that lie side by side or one above the other
 
     def __init__(self, rig: Rig) -> None:
         super().__init__()
@@ -35,8 +36,17 @@ class SurfaceTextures(nn.Module):
             "faces": torch.as_tensor(rig.mesh.faces).long(),
             "texels": torch.as_tensor(rig.texels.texels).long(),
         }
+        held["neighbours"] = neighbours(held["texels"], self.size)
         for name, tensor in held.items():
             self.register_buffer(name, tensor, persistent=False)
+
+    def roughness(
+        self,
+        values: Tensor,  # [N, C] at the valid texels
+    ) -> Tensor:
+        """The mean squared difference between texels that lie side by side in the texture."""
+        one, other = values[self.neighbours]
+        return (one - other).square().mean() if len(one) else values.new_zeros(())
 
     def forward(
         self,
@@ -101,6 +111,19 @@ class TexelNets(nn.Module):
         looks = code.view(1, -1, 1, 1).expand(-1, -1, *upright.shape[2:])
         images = self.geometry(turned), self.appearance(torch.cat([upright, looks], dim=1))
         return self.surface.at_texels(torch.cat(images, dim=1)[0])
+
+
+def neighbours(
+    texels: Tensor,  # [N] row * size + column
+    size: int,
+) -> Tensor:
+    """Indices [2, P] into `texels` of each pair that lies side by side or one above the other."""
+    at = torch.full((size * size,), -1, dtype=torch.long)
+    at[texels] = torch.arange(len(texels))
+    grid = at.view(size, size)
+    pairs = [torch.stack([grid[:, :-1], grid[:, 1:]]), torch.stack([grid[:-1], grid[1:]])]
+    flat = torch.cat([pair.flatten(1) for pair in pairs], dim=1)
+    return flat[:, (flat >= 0).all(dim=0)]
 
 
 def normals(

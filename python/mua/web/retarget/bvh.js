@@ -16,6 +16,7 @@ const UNITS = [1, 0.01, 0.001, 0.1, 0.0254]; // metres per unit, the likeliest f
 const PERSON_SPAN = [1.7, 3.2]; // metres along the bones from fingertip to toe, child to giant
 const TYPICAL_SPAN = 2.35;
 const HELD = 1e-4; // of the span: a joint whose place in its parent changes by less keeps the mean
+const SLOWEST = 5; // seconds between frames; more are frames per second or milliseconds in their place
 const WHOLE_RATE = 1e-3; // relative: 0.033333 s means 30 frames per second
 const MOST = 0.5; // share of frames with heads above feet along Z or X, rather than Y, from which on it is up
 const ON_HEAD = 0.9; // of the frames that have heads below feet: more than any handstand is of its clip
@@ -88,7 +89,7 @@ function readFrames(lines, width) {
   const count = header(rows[0], "Frames");
   const time = header(rows[1], "Frame Time");
   if (!(count >= 1 && Number.isInteger(count))) throw fault(`Frames: expected at least 1 frame, found ${count}.`);
-  if (!(time > 0)) throw fault(`Frame Time: expected seconds above 0, found ${time}.`);
+  if (!(time > 0 && time <= SLOWEST)) throw fault(`Frame Time: expected seconds above 0 and up to ${SLOWEST}, found ${time}.`);
   const words = rows.slice(2).join(" ").split(/\s+/).filter(Boolean);
   const values = numbers("MOTION", words);
   const whole = rows.length > 2 && rows.slice(2).every((row) => row.trim().split(/\s+/).length === width);
