@@ -31,7 +31,8 @@ def surfaces(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Surfaces:
     return read_surfaces(grinning(tmp_path))
 
 
-def test_the_process_draws_what_this_one_would(surfaces: Surfaces) -> None:
+def test_the_process_draws_what_this_one_would(surfaces: Surfaces, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(source_process, "PICTURED", 1)  # so that both are first drawn with few samples
     source, expressions = surfaces.source, surfaces.expressions
     assert source is not None
     assert expressions is not None
@@ -45,9 +46,14 @@ def test_the_process_draws_what_this_one_would(surfaces: Surfaces) -> None:
         assert face is not None
         process.draw_faces_of(face)
         answers, poses = (list(process.faces()), list(process.splat_faces())), list(process.poses())
+        answers = *answers, list(process.draw_again(expressions.names[1:]))
     with opened() as context:
         np.testing.assert_array_equal(poses, list(source_poses(context, source.scene, sittings)))
-        here = list(source_faces(context, source.scene, rest, expressions.names)), list(splat_faces(context, face))
+        here = (
+            list(source_faces(context, source.scene, rest, expressions.names, coarse=True)),
+            list(splat_faces(context, face, expressions.names, coarse=True)),
+            list(source_faces(context, source.scene, rest, expressions.names[1:])),
+        )
     for drawn, expected in zip(answers, here, strict=True):
         assert [patch.area for patch in drawn] == [patch.area for patch in expected]
         for patch, other in zip(drawn, expected, strict=True):
