@@ -109,7 +109,8 @@ class Painter:
     ) -> None:
         """Draw what is near a camera before what it hides from now on, whose texture then need not be looked up.
 
-        What is not `shown` is not drawn any more. Of triangles in one place the first of the file stays the first: they are ordered by slices of the depth.
+        What is not `shown` is not drawn any more. Of triangles in one place the first of the file stays the first: they
+        are ordered by slices of the depth.
         """
         depths = [_depths(at[piece.corners], camera) for piece, at in zip(self._pieces, places, strict=True)]
         thickness = max(float(np.ptp(np.concatenate(depths))) / SLICES, np.finfo(float).tiny)

@@ -97,7 +97,7 @@ def _among(at: Array, part: Part) -> Array:
 
 
 def _shown(part: Part, places: Array, camera: Camera) -> Array:
-    """Which of a part's triangles [F] may be in the image: those not beyond one of its sides, and all that targets move."""
+    """Which of a part's triangles [F] may be in the image: all but those beyond one of its sides that nothing moves."""
     pixels, depths = camera.pixels(places)
     sides = np.column_stack([pixels < 0, pixels > camera.screen]) & (depths > camera.near)[:, None]
     moved = _among(np.concatenate([np.empty(0, int), *(target.vertices for target in part.targets)]), part)
