@@ -45,8 +45,8 @@ def test_the_process_draws_what_this_one_would(surfaces: Surfaces, monkeypatch: 
         face = face_of(StillTeacher(character, texels=96), source.scene, rest)
         assert face is not None
         process.draw_faces_of(face)
-        answers, poses = (list(process.faces()), list(process.splat_faces())), list(process.poses())
-        answers = *answers, list(process.draw_again(expressions.names[1:]))
+        poses, again = list(process.poses()), process.draw_again(expressions.names[1:])
+        answers = list(process.faces()), list(process.splat_faces()), list(again)
     with opened() as context:
         np.testing.assert_array_equal(poses, list(source_poses(context, source.scene, sittings)))
         here = (

@@ -101,7 +101,8 @@ def _shown(part: Part, places: Array, camera: Camera) -> Array:
     pixels, depths = camera.pixels(places)
     sides = np.column_stack([pixels < 0, pixels > camera.screen]) & (depths > camera.near)[:, None]
     moved = _among(np.concatenate([np.empty(0, int), *(target.vertices for target in part.targets)]), part)
-    return np.asarray(~sides[part.faces].all(axis=1).any(axis=1) | moved[part.faces].any(axis=1))
+    beyond = np.asarray(sides[part.faces].all(axis=1)).any(axis=1)
+    return np.asarray(~beyond | moved[part.faces].any(axis=1))
 
 
 def camera_of(scene: Scene, rest: Moment) -> Camera:
