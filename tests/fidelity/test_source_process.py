@@ -62,7 +62,7 @@ def test_the_process_draws_what_this_one_would(surfaces: Surfaces, monkeypatch: 
 
 
 def test_nothing_that_the_process_draws_is_drawn_here(surfaces: Surfaces, monkeypatch: pytest.MonkeyPatch) -> None:
-    def nothing(*_: object) -> Iterator[Any]:
+    def nothing(*_: object, **__: object) -> Iterator[Any]:
         raise AssertionError
         yield
 
