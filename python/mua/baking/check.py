@@ -50,14 +50,16 @@ class Check:
     written: tuple[Path, ...]
 
 
-def check(settings: BakeSettings, listener: Listener) -> Check:
+def check(settings: BakeSettings, listener: Listener, *, every_face: bool = False) -> Check:
     """Measure fidelity and motion, and leave images, and files of names to start from, beside the output.
+
+    With `every_face`, the image of the face shows each expression, else of many only those least like the file.
 
     Raises InputError where the character or a motion cannot be read, or where nothing can be written.
     """
     require_writable(settings.output)
     listener.stage("character")
-    with threadpool_limits(1, user_api="blas"), SourceProcess() as process:  # as in a bake
+    with threadpool_limits(1, user_api="blas"), SourceProcess(every=every_face) as process:  # as in a bake
         character = load_baked_character(settings, read=process.begin)
         return _check(settings, character, listener, process=process)
 

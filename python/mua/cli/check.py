@@ -28,7 +28,7 @@ def check_and_show(settings: BakeSettings, json: Path | None, *, verbose: bool =
         require_writable(json)
     console = printer()
     with Display(console, verbose=verbose) as display:
-        found = check(settings, display)
+        found = check(settings, display, every_face=verbose)
     if json is not None:
         write_json(json, as_dict(settings, found))
     show(console, found, verbose=verbose)
@@ -109,10 +109,13 @@ def show(console: Console, found: Check, *, verbose: bool = False) -> None:
 
 def _face(face: FaceFidelity) -> str:
     """How many expressions there are, and how like the source the face is in them."""
+    rest = face.rest.agreement.psnr
     decibels = sorted(shot.agreement.psnr for shot in face.expressions)
+    few = len(face.pictured)
+    shown = f" The picture has the {few} least like it (--verbose: all)." if few < len(decibels) else ""
     return (
         f"Face: {len(decibels)} expressions at weight 1 compared with the source: least {decibels[0]:.1f} dB "
-        f"({face.worst.name}), median {decibels[len(decibels) // 2]:.1f} dB, at rest {face.rest.agreement.psnr:.1f} dB."
+        f"({face.worst.name}), median {decibels[len(decibels) // 2]:.1f} dB, at rest {rest:.1f} dB.{shown}"
     )
 
 

@@ -14,9 +14,9 @@ COLUMNS = 2  # expressions beside each other
 
 
 def face_sheet(face: FaceFidelity) -> Image.Image:
-    """Three cells for the face at rest and for every expression, in the order of the file."""
+    """Three cells for the face at rest and for every expression that is drawn, in the order of the file."""
     background = background_for([face.rest.source])
-    return sheet([_strip(shot, background) for shot in (face.rest, *face.expressions)], COLUMNS)
+    return sheet([_strip(shot, background) for shot in (face.rest, *face.pictured)], COLUMNS)
 
 
 def _strip(shot: ExpressionShot, background: float) -> Array:

@@ -105,15 +105,18 @@ class Painter:
         self,
         places: Sequence[Array],  # as drawn
         camera: Camera,
+        shown: Sequence[Array],  # for each part its triangles [F] bool that may be in an image
     ) -> None:
         """Draw what is near a camera before what it hides from now on, whose texture then need not be looked up.
 
-        Of triangles in one place the first of the file stays the first: they are ordered by slices of the depth.
+        What is not `shown` is not drawn any more. Of triangles in one place the first of the file stays the first: they
+        are ordered by slices of the depth.
         """
         depths = [_depths(at[piece.corners], camera) for piece, at in zip(self._pieces, places, strict=True)]
         thickness = max(float(np.ptp(np.concatenate(depths))) / SLICES, np.finfo(float).tiny)
-        for piece, depth in zip(self._pieces, depths, strict=True):
+        for piece, depth, held in zip(self._pieces, depths, shown, strict=True):
             order = np.argsort(-np.floor(depth / thickness), kind="stable")
+            order = order[held[order]]
             piece.corners = piece.corners.reshape(-1, 3)[order].ravel()
             piece.inputs = piece.inputs.reshape(-1, 3, 6)[order].reshape(-1, 6)
 

@@ -3,13 +3,11 @@
 from typing import Any
 
 from mua.fidelity.compare import Fidelity, PoseFidelity, Shot
-from mua.fidelity.faces import FaceFidelity
+from mua.fidelity.faces import LOST, LOST_OVERLAP, FaceFidelity
 from mua.fidelity.measure import Agreement
 
 GOOD_IOU = 0.97
 GOOD_PSNR = 30.0  # decibels
-LOST = 2.0  # decibels: an expression that loses more against the face at rest is worth a look
-LOST_OVERLAP = 0.01  # the same of the silhouettes
 SHOWN = 8  # expressions that a sentence names
 
 

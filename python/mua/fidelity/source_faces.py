@@ -13,7 +13,7 @@ import numpy as np
 from mua.arrays import Array
 from mua.avatar.camera import Camera, orbit
 from mua.fidelity.canvas import Area
-from mua.fidelity.painter import Painter
+from mua.fidelity.painter import SAMPLES, Painter
 from mua.fidelity.posed_source import Moment, skinned
 from mua.scene import Part, Scene
 
@@ -36,9 +36,16 @@ class Patch(NamedTuple):
         return whole
 
 
-def source_faces(context: moderngl.Context, scene: Scene, rest: Moment, names: Sequence[str]) -> Iterator[Patch]:
+def source_faces(
+    context: moderngl.Context,
+    scene: Scene,
+    rest: Moment,
+    names: Sequence[str],
+    *,
+    coarse: bool = False,  # one sample in a pixel
+) -> Iterator[Patch]:
     """The image of the file's own meshes at rest, and what is other in that of each expression alone."""
-    of_source = _Source(context, scene, rest, camera_of(scene, rest))
+    of_source = _Source(context, scene, rest, camera_of(scene, rest), samples=1 if coarse else SAMPLES)
     yield Patch(Area(0, 0, *SCREEN), of_source.at_rest)
     yield from map(of_source.expressed, names)
 
@@ -46,11 +53,12 @@ def source_faces(context: moderngl.Context, scene: Scene, rest: Moment, names: S
 class _Source:
     """Draws the file's own meshes; for an expression only where it moves them."""
 
-    def __init__(self, context: moderngl.Context, scene: Scene, rest: Moment, camera: Camera) -> None:
+    def __init__(self, context: moderngl.Context, scene: Scene, rest: Moment, camera: Camera, *, samples: int) -> None:
         self._scene, self._rest, self._camera = scene, rest, camera
-        self._paint = Painter(context, scene.parts, scene.materials, screen=SCREEN)
+        self._paint = Painter(context, scene.parts, scene.materials, screen=SCREEN, samples=samples)
         self._places = [skinned(scene, part, rest.nodes) for part in scene.parts]
-        self._paint.near_first(self._places, camera)
+        shown = [_shown(part, at, camera) for part, at in zip(scene.parts, self._places, strict=True)]
+        self._paint.near_first(self._places, camera, shown)
         self.at_rest = self._paint(self._places, camera)
 
     def expressed(self, name: str) -> Patch:
@@ -58,9 +66,11 @@ class _Source:
         places, moved = list(self._places), [np.empty((0, 3))]
         for index, part in enumerate(self._scene.parts):
             if vertices := [target.vertices for target in part.targets if target.name == name]:
-                places[index] = skinned(self._scene, _with_target(part, name), self._rest.nodes)
-                corners = np.unique(part.faces[np.isin(part.faces, np.concatenate(vertices)).any(axis=1)])
-                moved += [at[index][corners] for at in (self._places, places)]
+                at = np.unique(np.concatenate(vertices))
+                places[index] = self._places[index].copy()
+                places[index][at] = skinned(self._scene, _some(_with_target(part, name), at), self._rest.nodes)
+                corners = np.unique(part.faces[_among(at, part)[part.faces].any(axis=1)])
+                moved += [of[index][corners] for of in (self._places, places)]
         area = Area.of_points(np.concatenate(moved), self._camera)
         return Patch(area, area.of(self.at_rest) if area.empty else self._paint(places, self._camera, area))
 
@@ -72,6 +82,27 @@ def _with_target(part: Part, name: str) -> Part:
         if target.name == name:
             positions[target.vertices] += target.offsets
     return replace(part, positions=positions)
+
+
+def _some(part: Part, at: Array) -> Part:
+    """Some of a part's vertices, to be skinned."""
+    return replace(part, positions=part.positions[at], joints=part.joints[at], weights=part.weights[at])
+
+
+def _among(at: Array, part: Part) -> Array:
+    """Whether each of a part's vertices [N] is one of some."""
+    held = np.zeros(len(part.positions), bool)
+    held[at] = True
+    return held
+
+
+def _shown(part: Part, places: Array, camera: Camera) -> Array:
+    """Which of a part's triangles [F] may be in the image: all but those beyond one of its sides that nothing moves."""
+    pixels, depths = camera.pixels(places)
+    sides = np.column_stack([pixels < 0, pixels > camera.screen]) & (depths > camera.near)[:, None]
+    moved = _among(np.concatenate([np.empty(0, int), *(target.vertices for target in part.targets)]), part)
+    beyond = np.asarray(sides[part.faces].all(axis=1)).any(axis=1)
+    return np.asarray(~beyond | moved[part.faces].any(axis=1))
 
 
 def camera_of(scene: Scene, rest: Moment) -> Camera:

@@ -9,7 +9,7 @@ from mua.arrays import Array
 from mua.rig.character import Mesh
 
 MEMBER, TURNED, CHIEF = 1, 2, 3  # a texel's role in its block of 2 x 2: averaged, its rotation too, gives its place
-CANDIDATES_AT_ONCE = 1 << 20  # texel-in-triangle tests held in memory together, about 100 MB
+CANDIDATES_AT_ONCE = 1 << 15  # texel-in-triangle tests, which processors then hold in their caches
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,7 +119,7 @@ def cover(
     for faces, texels in _candidates(corners, size):
         one, two, three = _corner_areas(edges, faces, texels, size)
         least, most = np.minimum(np.minimum(one, two), three), np.maximum(np.maximum(one, two), three)
-        claims += np.bincount(texels[least > 0], minlength=size * size)
+        np.add.at(claims, texels[least > 0], 1)
         covered = np.flatnonzero((least >= 0) & (most > 0))
         covered = covered[owner[texels[covered]] < 0][::-1]  # numpy keeps the last of equal indices: the first face
         owner[texels[covered]] = faces[covered]
