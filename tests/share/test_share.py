@@ -10,6 +10,7 @@ import socket
 import subprocess
 import sys
 from collections.abc import Iterator
+from contextlib import closing
 from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
@@ -259,10 +260,12 @@ def port(tmp_path: Path) -> Iterator[int]:
     """That of a server of a small site, beside a file that is not of it."""
     (tmp_path / "hero.muaavatar").write_bytes(BYTES)
     (tmp_path / "secret.txt").write_text("secret")
-    files: dict[str, site.Content] = {"index.html": b"<p>page</p>", "a.js": b"1", "x.wgsl": b"//"}
+    names = ("index.html", "a.js", "x.wgsl", "style.css", "poster.png", "icon.svg")
+    files: dict[str, site.Content] = dict.fromkeys(names, b"1")
     with serving({**files, "my hero.muaavatar": tmp_path / "hero.muaavatar", "gone": tmp_path / "gone"}) as server:
         thread = Thread(target=server.serve_forever, args=(0.02,))
         thread.start()
+        assert server.server_address[0] == AUTHORITY  # no other machine reaches it
         yield server.server_port
         server.shutdown()
         thread.join()
@@ -297,6 +300,9 @@ def test_a_body_does_not_wait_until_its_header_is_confirmed(port: int, monkeypat
         ("/index.html?x=1", "text/html; charset=utf-8"),
         ("/a.js", "text/javascript; charset=utf-8"),
         ("/x.wgsl", "text/wgsl; charset=utf-8"),
+        ("/style.css", "text/css; charset=utf-8"),
+        ("/poster.png", "image/png"),
+        ("/icon.svg", "image/svg+xml"),
         ("/my%20hero.muaavatar", "application/octet-stream"),
     ],
 )
@@ -343,6 +349,11 @@ def test_a_browser_keeps_nothing_for_the_next_run_at_the_same_address(port: int)
 def test_a_head_has_no_body(port: int) -> None:
     status, headers, body = ask(port, "/my%20hero.muaavatar", "HEAD")
     assert (status, headers["Content-Length"], body) == (200, "1024", b"")
+    with closing(http.client.HTTPConnection(AUTHORITY, port)) as connection:
+        for path, expected in (("/nothing", 404), ("/a.js", 200)):  # which a body of the first would precede
+            connection.request("HEAD", path)
+            with connection.getresponse() as answer:
+                assert answer.status == expected
 
 
 def test_another_name_for_this_address_is_refused(port: int) -> None:
