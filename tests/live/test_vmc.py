@@ -69,8 +69,9 @@ def test_a_frame_is_complete_where_the_next_one_begins(end: tuple[Any, ...]) -> 
     np.testing.assert_array_equal(whole(assembler).rotations[BONES.index("Head")], [1, 0, 0, 0])
 
 
-def test_a_frame_that_nothing_ends_is_complete_when_nothing_more_comes() -> None:
-    assembler = fed(message(*bone("Head")), time=5.0)
+@pytest.mark.parametrize("part", [bone("Head"), ("/VMC/Ext/Blend/Val", "A", 0.5)])
+def test_a_frame_that_nothing_ends_is_complete_when_nothing_more_comes(part: tuple[Any, ...]) -> None:
+    assembler = fed(message(*part), time=5.0)
     assembler.settle(5.0 + QUIET / 2)
     assert assembler.newest is None
     assembler.settle(5.0 + 1.5 * QUIET)

@@ -133,7 +133,7 @@ namespace Mua
             Say("allocated", GC.GetAllocatedBytesForCurrentThread() - before);
             shown.ResetExpressions();
             SayWeights("reset", shown);
-            SkinnedMeshRenderer face = MakeFace("head", "jawOpen", "mouthClose", "cheekPuff", "eyeBlinkLeft", "blend.smoking");
+            SkinnedMeshRenderer face = MakeFace("head", "jawOpen", "mouthClose", "cheekPuff", "eyeBlinkLeft", "blend.smo_king", "SMOKING");
             shown.Face = face;
             for (int shape = 0; shape < 5; shape++)
             {
