@@ -15,7 +15,7 @@ from mua.characters.gltf.vrm import ROLES
 from mua.characters.read import read_surfaces
 from mua.errors import InputError
 from mua.live.bones import AT_REST, BONES, sender_skeleton
-from mua.live.retargeting import CONFIRMED, Posing
+from mua.live.retargeting import CONFIRMED, SECONDS, Posing
 from mua.live.vmc import Frame
 from mua.motion.bvh import read_bvh
 from mua.motion.source_motion import SourceMotion
@@ -137,6 +137,17 @@ def test_feet_stand_on_the_floor_however_high_the_sender_has_its_hips() -> None:
         moved.positions[BONES.index("Hips")] = [0, height, 0]
         live = posed(Posing(target), [moved])
         assert at(target, live, "LeftFoot")[0, 1] == pytest.approx(ankle, abs=FLOOR)
+
+
+def test_the_floor_is_where_feet_stood_in_the_last_ten_seconds() -> None:
+    target, one, frames = person(), frame({}), []
+    for index in range(60):  # upstairs from the half on
+        one.positions[BONES.index("Hips")] = [0, 0.94 + (2.0 if index >= 30 else 0), 0]
+        time = index / 60 + (SECONDS if index >= 31 else 0)
+        frames.append(Frame(time, one.rotations, one.positions.copy(), one.known, {}))
+    heights = at(target, posed(Posing(target), frames), "LeftFoot")[:, 1]
+    assert heights[30] - heights[0] > 1.5
+    assert heights[-1] == pytest.approx(heights[0], abs=FLOOR)
 
 
 def test_a_jump_leaves_the_floor() -> None:
