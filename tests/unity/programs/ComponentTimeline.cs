@@ -169,6 +169,9 @@ namespace Mua
             SayMoment("begins", shown);
             Frames(10);
             SayMoment("rests", shown);
+            shown.Load(files[0]);
+            Until(shown);
+            SayMoment("reloaded", shown);
             Animate(shown, "time", 0.05f);
             Frames(1);
             SayMoment("goes", shown);
