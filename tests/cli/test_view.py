@@ -116,8 +116,11 @@ def test_the_device_and_the_cpu_reference_write_the_same_picture(avatar_file: Pa
     assert np.abs(found - expected).max() <= SHADES
 
 
-def test_stereo_puts_two_different_eyes_side_by_side(avatar_file: Path, tmp_path: Path) -> None:
+def test_stereo_puts_two_different_eyes_side_by_side(
+    avatar_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     view(files=[avatar_file], output=tmp_path / "v.png", size="40x60", stereo=True)
+    assert capsys.readouterr().out.endswith("v.png: 80 x 60 pixels\n")
     image = pixels(tmp_path / "v.png")
     assert image.shape == (60, 80, 3)
     left, right = image[:, :40], image[:, 40:]

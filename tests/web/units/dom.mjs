@@ -85,7 +85,8 @@ class Part extends EventTarget {
 }
 
 const made = new Map(); // elements by name
-let frames = []; // that were asked of the display
+const frames = new Map(); // that were asked of the display, by their requests
+let requests = 0;
 
 Object.assign(globalThis, {
   HTMLElement: Part,
@@ -109,14 +110,14 @@ Object.assign(globalThis, {
   customElements: { get: (name) => made.get(name), define: (name, kind) => made.set(name, kind) },
   devicePixelRatio: 3,
   matchMedia: () => ({ matches: page.lessMotion }),
-  requestAnimationFrame: (draws) => frames.push(draws),
-  cancelAnimationFrame: (request) => (frames[request - 1] = () => {}),
+  requestAnimationFrame: (draws) => (frames.set(++requests, draws), requests),
+  cancelAnimationFrame: (request) => frames.delete(request),
   document: { baseURI: "http://host/page.html", fullscreenEnabled: false, createElement: () => page.make() },
 });
 Object.defineProperty(globalThis, "navigator", { value: { gpu: {} }, configurable: true });
 
 /** The reader's wishes, what a page makes, and how it forgets what waits for the display. */
-export const page = { lessMotion: false, make: () => new Part(), rest: () => (frames = []) };
+export const page = { lessMotion: false, make: () => new Part(), rest: () => frames.clear() };
 
 export const settled = () => new Promise((done) => setTimeout(done));
 
@@ -124,7 +125,9 @@ export const settled = () => new Promise((done) => setTimeout(done));
 export async function display(count, apart = 0) {
   for (let i = 0; i < count; i++) {
     const now = (display.now = Math.max(display.now ?? 0, performance.now()) + apart);
-    for (const draws of frames.splice(0)) draws(now);
+    const due = [...frames.values()];
+    frames.clear();
+    for (const draws of due) draws(now);
     await settled();
   }
 }

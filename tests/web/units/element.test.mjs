@@ -95,6 +95,9 @@ test("each avatar is told of, the first picture once, and the poster goes with i
   assert.deepEqual(element.events.toSorted(), ["load", "load", "picture"]);
   const poster = part(element, ".poster");
   assert.deepEqual([poster.src, poster.hidden], ["p.png", true]);
+  const empty = await shown({});
+  empty.poster = "q.png";
+  assert.deepEqual([part(empty, ".poster").src, part(empty, ".poster").hidden], ["q.png", false]);
   const first = element.firstPicture;
   await element.add("c");
   assert.equal(element.firstPicture, first);
@@ -141,6 +144,15 @@ test("frames go round at both ends of a clip, clips and levels after the last", 
   assert.deepEqual(clips, ["bow", "wave"]);
   const levels = [0, 1, 2, 3].map(() => (element.nextLevel(), element.player.level));
   assert.deepEqual(levels, ["full", 16, 8, "auto"]);
+});
+
+test("a page learns where an avatar is", async () => {
+  const [{ bounds, levels, splats }] = (await shown()).avatars;
+  assert.deepEqual(
+    bounds,
+    [golden.bounds.slice(0, 3), golden.bounds.slice(3)].map((corner) => Array.from(corner)),
+  );
+  assert.deepEqual([levels, splats], [[32, 16, 8], golden.texels.texels.length]);
 });
 
 test("seeking pauses, and the clip that plays starts over where it is chosen again", async () => {
@@ -210,6 +222,11 @@ test("it goes round while it plays, and not where less motion is wanted", async 
     await display(3, 50);
     assert.equal(element.player.camera.azimuth > before, turns);
   }
+  element.pause();
+  element.setPose({}); // which moves it, though no clip plays
+  const { azimuth } = element.player.camera;
+  await display(3, 50);
+  assert.equal(element.player.camera.azimuth, azimuth);
 });
 
 test("the canvas has the pixels of the screen, two a side at most", async () => {

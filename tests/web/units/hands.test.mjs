@@ -103,6 +103,21 @@ test("shift and each arrow turn as a drag that way does", () => {
   assert.equal(turns.length, 4);
 });
 
+test("plus goes nearer, with and without the shift key, and minus farther", () => {
+  const zooms = [];
+  for (const key of ["+", "=", "-"])
+    pressed(eventOf("keydown", { key, composedPath: () => [{}] }), { zoom: (notches) => zooms.push(notches) });
+  assert.deepEqual(zooms, [1, 1, -1]);
+});
+
+test("a list or a field that has the focus keeps its letters", () => {
+  for (const kind of ["select", "input", "textarea"]) {
+    const focus = Object.assign(new HTMLElement(), { matches: (names) => names.split(", ").includes(kind) });
+    const event = eventOf("keydown", { key: "c", composedPath: () => [focus] });
+    assert.equal(pressed(event, { nextClip: () => assert.fail(kind) }), false);
+  }
+});
+
 test("files that are dropped are shown, and the mark of dropping goes with them", () => {
   const marks = new Set();
   const classList = { toggle: (name, is) => void (is ? marks.add(name) : marks.delete(name)) };
