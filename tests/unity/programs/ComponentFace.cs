@@ -147,7 +147,7 @@ namespace Mua
             shown.ResetExpressions();
             SkinnedMeshRenderer face = MakeFace("head", "jawOpen", "mouthClose", "cheekPuff", "eyeBlinkLeft", "blend.smo_king", "SMOKING");
             shown.Face = face;
-            for (int shape = 0; shape < 5; shape++)
+            for (int shape = 0; shape < 6; shape++)
             {
                 face.SetBlendShapeWeight(shape, 90 - 20 * shape);
             }
