@@ -103,6 +103,13 @@ test("shift and each arrow turn as a drag that way does", () => {
   assert.equal(turns.length, 4);
 });
 
+test("arrows alone go a frame back and on", () => {
+  const steps = [];
+  for (const key of ["ArrowLeft", "ArrowRight"])
+    pressed(eventOf("keydown", { key, composedPath: () => [{}] }), { step: (frames) => steps.push(frames) });
+  assert.deepEqual(steps, [-1, 1]);
+});
+
 test("plus goes nearer, with and without the shift key, and minus farther", () => {
   const zooms = [];
   for (const key of ["+", "=", "-"])
