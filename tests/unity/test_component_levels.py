@@ -24,7 +24,7 @@ def test_the_level_follows_the_camera_or_what_is_asked_for(story: Story) -> None
 
 
 def test_texels_are_measured_at_the_nearest_point_that_is_drawn(story: Story) -> None:
-    """That is the near plane, 0.25 m away, where the eye is within the box; an avatar that is scaled has larger ones."""
+    """That is the near plane, 0.25 m away, where the eye is within the box; a scaled avatar has larger ones."""
     reported = story("MeasuresTexels", "first")
     focal = float(reported["focal"][0])
     seen = [tuple(map(float, line.split())) for line in reported["seen"]]
