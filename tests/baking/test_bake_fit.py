@@ -24,11 +24,18 @@ class Recorded(Exception):
 
 
 @pytest.fixture
-def teachers(forked: None, monkeypatch: pytest.MonkeyPatch) -> list[SimulatedTeacher]:
+def keys() -> list[str]:
+    """Those of the recordings."""
+    return []
+
+
+@pytest.fixture
+def teachers(forked: None, keys: list[str], monkeypatch: pytest.MonkeyPatch) -> list[SimulatedTeacher]:
     made: list[SimulatedTeacher] = []
 
-    def recorded(make_teacher: Callable[[], SimulatedTeacher], *_: object) -> None:
+    def recorded(make_teacher: Callable[[], SimulatedTeacher], key: str, *_: object) -> None:
         made.append(make_teacher())
+        keys.append(key)
         raise Recorded
 
     monkeypatch.setattr(pipeline, "recorded", recorded)
@@ -61,8 +68,12 @@ def bake(tmp_path: Path) -> list[str]:
     return notes.all
 
 
+def nothing_to_draw_with() -> None:
+    raise InputError("OpenGL is not there")
+
+
 def test_the_teacher_holds_the_fit_and_a_second_bake_takes_it_from_the_work_directory(
-    tmp_path: Path, teachers: list[SimulatedTeacher], monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, teachers: list[SimulatedTeacher], keys: list[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     bake(tmp_path)
     (file,) = (tmp_path / "work").glob("fit-*.npy")
@@ -70,8 +81,10 @@ def test_the_teacher_holds_the_fit_and_a_second_bake_takes_it_from_the_work_dire
     assert corrections.any()
     monkeypatch.setattr(fitting, "fit", None)
     bake(tmp_path)
-    np.save(file, np.zeros_like(corrections))
+    file.unlink()
+    monkeypatch.setattr(fitting, "fit", lambda *_, **__: nothing_to_draw_with())
     bake(tmp_path)
+    assert keys[0] == keys[1] != keys[2]  # what is recorded without a fit is no recording of the fitted splats
     pose = teachers[0].rig.skeleton.bind_pose
     first, second, as_laid = (teacher.frame(pose).texture for teacher in teachers)
     assert np.array_equal(first, second)
@@ -81,9 +94,6 @@ def test_the_teacher_holds_the_fit_and_a_second_bake_takes_it_from_the_work_dire
 def test_without_opengl_splats_stay_as_they_are_laid_and_a_note_says_so(
     tmp_path: Path, teachers: list[SimulatedTeacher], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def nothing_to_draw_with() -> None:
-        raise InputError("OpenGL is not there")
-
     monkeypatch.setattr(fitting, "opened", nothing_to_draw_with)
     assert any("were not fitted to the source: OpenGL is not there" in note for note in bake(tmp_path))
     assert not list((tmp_path / "work").glob("fit-*"))

@@ -75,7 +75,7 @@ def colmap(folder: Path, *, model: str = "OPENCV") -> None:
     values = [61.0, 60.0, 19.7, 11.6, *LENS]
     (folder / "cameras.txt").write_text(f"# Cameras\n7 {model} 40 24 {' '.join(map(str, values))}\n")
     rows = [
-        " ".join(map(str, [number, *quaternion(matrix), *matrix[:3, 3], 7, f"{name}/000000.jpg"]))
+        " ".join(map(str, [number, *2 * np.array(quaternion(matrix)), *matrix[:3, 3], 7, f"{name}/000000.jpg"]))
         for number, (name, matrix) in enumerate(zip(NAMES, MATRICES, strict=True))
     ]
     (folder / "images.txt").write_text("# Images\n" + "".join(f"{row}\n1.0 2.0 -1 \n" for row in rows))

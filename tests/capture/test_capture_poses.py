@@ -37,7 +37,9 @@ def test_poses_are_those_that_were_recorded_from_the_first_on(small_capture: Cap
 
 def test_poses_come_at_the_rate_of_the_pictures(small_capture: Capture) -> None:
     half = replace(small_capture, rate=15.0, clips=(replace(small_capture.clips[0], first=1, frames=2),))
-    found = places(half.surfaces.skeleton, half.motion("walk"))
+    motion = half.motion("walk")
+    assert motion.rate == 15.0
+    found = places(half.surfaces.skeleton, motion)
     expected = places(procedural_character().skeleton, motions()["walk"])
     np.testing.assert_allclose(found["Head"], expected["Head"][[2, 4]], atol=WRITTEN)
 

@@ -114,6 +114,10 @@ def test_a_wide_picture_stays_as_wide_where_it_is_made_smaller() -> None:
     picture = np.zeros((120, 160, 4), np.uint8)
     picture[40:80, 100:140] = 255
     view = view_of(RawFrame(picture[..., :3], picture[..., 3:], clear=False), wide, crop=False, rows=30)
+    bent = view_of(
+        RawFrame(picture[..., :3], picture[..., 3:], clear=False), replace(wide, distortion=LENS), crop=False, rows=30
+    )
+    assert bent.pinhole.distortion == view.pinhole.distortion
     assert (view.pinhole.size, view.image.shape, view.mask.shape) == ((40, 30), (30, 40, 3), (30, 40))
     np.testing.assert_array_equal(np.argwhere(view.mask), np.argwhere(picture[::4, ::4, 3]))
     corner = np.array([[(100 - wide.centre[0]) / wide.focal[0], (40 - wide.centre[1]) / wide.focal[1], 1.0]])

@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -161,6 +162,12 @@ def test_refuses_a_damaged_avatar_before_it_looks_for_a_headset(command: Command
 )
 def test_refuses_options_that_make_no_sense(command: Commands, arguments: list[str], sentence: str) -> None:
     assert sentence in command("deploy", *arguments).sentence
+
+
+def test_refuses_two_avatars_of_one_name(command: Commands, hero: Path, tmp_path: Path) -> None:
+    (tmp_path / "other").mkdir()
+    other = shutil.copy(hero, tmp_path / "other")
+    assert f"{other}: another avatar of this call has the name 'hero' too" in command("deploy", hero, other).sentence
 
 
 def test_says_that_the_player_is_not_installed(deploy: Deploy, hero: Path) -> None:

@@ -79,6 +79,7 @@ FILE = row(Entry("a_file_with_a_name_of_more_than_forty_letters", truth, Cost(10
 def test_no_figure_is_cut_on_eighty_columns() -> None:
     shown = table([MEAN, FILE], replace(SETTING, lpips="alex"))
     assert "…" not in shown
+    assert "LPIPS: alex, times 1000." in " ".join(shown.split())
     assert shown.count("48.12") == 4
     assert max(map(len, shown.splitlines())) <= 80
 

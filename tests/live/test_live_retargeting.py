@@ -15,7 +15,7 @@ from mua.characters.gltf.vrm import ROLES
 from mua.characters.read import read_surfaces
 from mua.errors import InputError
 from mua.live.bones import AT_REST, BONES, sender_skeleton
-from mua.live.retargeting import CONFIRMED, Posing
+from mua.live.retargeting import CONFIRMED, SECONDS, Posing
 from mua.live.vmc import Frame
 from mua.motion.bvh import read_bvh
 from mua.motion.source_motion import SourceMotion
@@ -139,6 +139,17 @@ def test_feet_stand_on_the_floor_however_high_the_sender_has_its_hips() -> None:
         assert at(target, live, "LeftFoot")[0, 1] == pytest.approx(ankle, abs=FLOOR)
 
 
+def test_the_floor_is_where_feet_stood_in_the_last_ten_seconds() -> None:
+    target, one, frames = person(), frame({}), []
+    for index in range(60):  # upstairs from the half on
+        one.positions[BONES.index("Hips")] = [0, 0.94 + (2.0 if index >= 30 else 0), 0]
+        time = index / 60 + (SECONDS if index >= 31 else 0)
+        frames.append(Frame(time, one.rotations, one.positions.copy(), one.known, {}))
+    heights = at(target, posed(Posing(target), frames), "LeftFoot")[:, 1]
+    assert heights[30] - heights[0] > 1.5
+    assert heights[-1] == pytest.approx(heights[0], abs=FLOOR)
+
+
 def test_a_jump_leaves_the_floor() -> None:
     target, frames = person(), []
     for index in range(60):
@@ -156,10 +167,11 @@ def test_another_figure_is_taken_when_it_stays_and_a_wrong_frame_is_not() -> Non
     moving = performing(SourceMotion(body, walk(body, 2 * CONFIRMED)), humanoid())
     half = Sender(small, Clip("half", 30.0, moving.clip.rotations, moving.clip.translations / 2))
     large, little = frames_of(moving), frames_of(half)
-    posing = Posing(target)
-    before = posed(posing, [*large[:20], little[20], *large[21:25]])
-    steps = np.linalg.norm(np.diff(at(target, before, "Hips")[21:], axis=0), axis=-1)
-    assert steps.max() < 0.1
+    posing, wrong = Posing(target), CONFIRMED // 2 + 5  # too few in a row, though not in all
+    before = posed(posing, [*large[:2], *little[2:wrong], large[wrong], *little[:wrong], *large[20:25]])
+    steady = posed(Posing(target), large[:25])
+    steps, usual = (np.diff(at(target, clip, "Hips")[-5:], axis=0)[:, [0, 2]] for clip in (before, steady))
+    np.testing.assert_allclose(steps, usual, atol=METRES)
     walked = posed(posing, [*little[25:], *little])
     ends = at(target, walked, "Hips")[[-20, -1]]
     expected = at(target, posed(Posing(target), large), "Hips")[[-20, -1]]

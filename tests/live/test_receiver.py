@@ -10,6 +10,7 @@ from people import person, retarget
 from shared_data import SharedData
 from vmc_senders import Program, Sender, humanoid, message, performing
 
+from mua.cli.listening import listening
 from mua.errors import InputError
 from mua.live.live_pose import EASING, Live
 from mua.live.receiver import Address, Receiver
@@ -56,6 +57,15 @@ def test_wrong_packets_are_counted_and_the_port_stays_open(receiver: Receiver, p
     newest = receiver.newest(time.monotonic())
     assert newest is not None
     assert newest.expressions == {"A": 0.5}
+
+
+@pytest.mark.parametrize(
+    ("host", "reach"), [("127.0.0.1", "this machine alone"), ("0.0.0.0", "whoever reaches this machine")]
+)
+def test_says_who_reaches_it(capsys: pytest.CaptureFixture[str], host: str, reach: str) -> None:
+    with listening(Address(0, host)) as receiver:
+        assert receiver is not None
+        assert capsys.readouterr().out == f"listens to VMC on {receiver.address}, from {reach}\n"
 
 
 def test_listens_on_the_loopback_address_alone_unless_told_otherwise(receiver: Receiver) -> None:

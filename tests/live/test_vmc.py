@@ -69,8 +69,9 @@ def test_a_frame_is_complete_where_the_next_one_begins(end: tuple[Any, ...]) -> 
     np.testing.assert_array_equal(whole(assembler).rotations[BONES.index("Head")], [1, 0, 0, 0])
 
 
-def test_a_frame_that_nothing_ends_is_complete_when_nothing_more_comes() -> None:
-    assembler = fed(message(*bone("Head")), time=5.0)
+@pytest.mark.parametrize("part", [bone("Head"), ("/VMC/Ext/Blend/Val", "A", 0.5)])
+def test_a_frame_that_nothing_ends_is_complete_when_nothing_more_comes(part: tuple[Any, ...]) -> None:
+    assembler = fed(message(*part), time=5.0)
     assembler.settle(5.0 + QUIET / 2)
     assert assembler.newest is None
     assembler.settle(5.0 + 1.5 * QUIET)
@@ -97,7 +98,9 @@ def test_what_a_frame_lacks_stays_as_it_was_until_the_sender_has_stopped() -> No
 def test_positions_and_turns_are_in_our_axes() -> None:
     """Unity's X points to the right of a figure that faces Z, and a turn about Y goes from Z to X: to its right."""
     half = np.sqrt(0.5)
-    head = whole(fed(bundle(bone("Head", at=(0.5, 0.25, 0.125), turn=(0.0, half, 0.0, half)), ("/VMC/Ext/OK", 1))))
+    head = whole(
+        fed(bundle(bone("Head", at=(0.5, 0.25, 0.125), turn=(0.0, 2 * half, 0.0, 2 * half)), ("/VMC/Ext/OK", 1)))
+    )
     np.testing.assert_array_equal(head.positions[BONES.index("Head")], [-0.5, 0.25, 0.125])
     np.testing.assert_allclose(head.rotations[BONES.index("Head")], [half, 0, -half, 0], atol=SINGLE)
 

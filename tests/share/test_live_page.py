@@ -5,7 +5,7 @@ import json
 import socket
 import time
 from collections.abc import Iterator
-from contextlib import closing
+from contextlib import closing, contextmanager
 from http.server import ThreadingHTTPServer
 from pathlib import Path
 from threading import Thread
@@ -17,11 +17,13 @@ from commands import Commands
 from people import person
 from vmc_senders import BODY, bundle
 
+from mua.live import live_pose
 from mua.live.bones import AT_REST, BONES
 from mua.live.live_pose import Live
 from mua.live.receiver import Latency
 from mua.live.vmc import Frame
 from mua.pose.encoding import PoseEncoding
+from mua.share import live_feed
 from mua.share.live_feed import PATH, Feed, live_site
 from mua.share.server import serving
 from mua.share.site import Shown, player_site
@@ -44,16 +46,21 @@ def live() -> Live:
     return Live(Turning().newest, person(), PoseEncoding(joints=(1,), rate=30.0), expressions=("aa", "happy"))
 
 
-@pytest.fixture
-def port(live: Live) -> Iterator[int]:
-    """Of a server of a page that is fed."""
-    feed = Feed([live, live], Latency())
+@contextmanager
+def served(feed: Feed) -> Iterator[int]:
+    """The port of a server of a page that is fed."""
     with serving(live_site(player_site([], Shown("live"))), {PATH: feed}) as server:
         thread = Thread(target=server.serve_forever, args=(0.02,))
         thread.start()
         yield server.server_port
         server.shutdown()
         thread.join()
+
+
+@pytest.fixture
+def port(live: Live) -> Iterator[int]:
+    with served(Feed([live, live], Latency())) as port:
+        yield port
 
 
 def asked(
@@ -90,6 +97,17 @@ def test_brings_the_pose_of_every_avatar_as_it_changes(port: int, live: Live) ->
     heads = [np.reshape(each["avatars"][0]["rotations"], (-1, 4))[HEAD] for each in found]
     assert np.abs(np.diff(heads, axis=0)).max(axis=1).all()
     np.testing.assert_allclose(np.abs(np.array(heads)[:, [0, 2]]), 0, atol=1e-6)  # x, y, z, w: about Y alone
+
+
+def test_a_pose_that_stays_is_sent_again_for_avatars_that_come_later(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(live_feed, "AGAIN", 0.05)
+    monkeypatch.setattr(live_pose, "EASING", 1e-9)  # two poses, then none
+    still = Live(lambda now: None, person(), PoseEncoding(joints=(1,), rate=30.0))
+    with served(Feed([still], Latency())) as port:
+        answer, connection = asked(port)
+        with closing(connection):
+            found = [text(answer)["avatars"] for _ in range(4)]
+    assert found[1] == found[2] == found[3]
 
 
 @pytest.mark.parametrize(
@@ -161,7 +179,7 @@ def test_mua_view_feeds_its_page_with_what_it_hears(
                     program.sendto(turned, ("127.0.0.1", free))
                     (avatar,) = text(live)["avatars"]
                     turns = np.reshape(avatar["rotations"], (-1, 4))
-                    found["live"] = abs(turns[2, 1]) > 0.5 and len(turns)
+                    found["live"] = 0.5 < abs(turns[2, 1]) < 0.7 and len(turns)  # x, y, z, w, once it is eased in
         thread.join()
         raise KeyboardInterrupt
 

@@ -24,6 +24,8 @@ from synthetic_avatar import synthetic_avatar
 
 from mua.asset import write
 from mua.avatar.camera import FILL
+from mua.cli.view_options import Asked
+from mua.cli.view_web import attributes
 from mua.rig.bounds import root_positions
 from mua.rotation import multiply
 from mua.share import folder, server, single, site
@@ -259,10 +261,12 @@ def port(tmp_path: Path) -> Iterator[int]:
     """That of a server of a small site, beside a file that is not of it."""
     (tmp_path / "hero.muaavatar").write_bytes(BYTES)
     (tmp_path / "secret.txt").write_text("secret")
-    files: dict[str, site.Content] = {"index.html": b"<p>page</p>", "a.js": b"1", "x.wgsl": b"//"}
+    names = ("index.html", "a.js", "x.wgsl", "style.css", "poster.png", "icon.svg")
+    files: dict[str, site.Content] = dict.fromkeys(names, b"1")
     with serving({**files, "my hero.muaavatar": tmp_path / "hero.muaavatar", "gone": tmp_path / "gone"}) as server:
         thread = Thread(target=server.serve_forever, args=(0.02,))
         thread.start()
+        assert server.server_address[0] == AUTHORITY  # no other machine reaches it
         yield server.server_port
         server.shutdown()
         thread.join()
@@ -297,6 +301,9 @@ def test_a_body_does_not_wait_until_its_header_is_confirmed(port: int, monkeypat
         ("/index.html?x=1", "text/html; charset=utf-8"),
         ("/a.js", "text/javascript; charset=utf-8"),
         ("/x.wgsl", "text/wgsl; charset=utf-8"),
+        ("/style.css", "text/css; charset=utf-8"),
+        ("/poster.png", "image/png"),
+        ("/icon.svg", "image/svg+xml"),
         ("/my%20hero.muaavatar", "application/octet-stream"),
     ],
 )
@@ -343,6 +350,9 @@ def test_a_browser_keeps_nothing_for_the_next_run_at_the_same_address(port: int)
 def test_a_head_has_no_body(port: int) -> None:
     status, headers, body = ask(port, "/my%20hero.muaavatar", "HEAD")
     assert (status, headers["Content-Length"], body) == (200, "1024", b"")
+    with socket.create_connection((AUTHORITY, port)) as plain, plain.makefile("rb") as answer:
+        plain.sendall(f"HEAD /nothing HTTP/1.1\r\nHost: {AUTHORITY}:{port}\r\nConnection: close\r\n\r\n".encode())
+        assert answer.read().endswith(b"\r\n\r\n")
 
 
 def test_another_name_for_this_address_is_refused(port: int) -> None:
@@ -376,6 +386,10 @@ def _assert_served(ran: "subprocess.Popen[str]", avatar_file: Path) -> None:
     ran.send_signal(signal.SIGINT)
     assert ran.wait(timeout=60) == 0
     assert ran.stderr.read() == ""
+
+
+def test_the_page_looks_from_beside_the_figures_front() -> None:
+    assert attributes(Asked(azimuth=30.0, elevation=5.0), 90.0) == {"azimuth": "120.0", "elevation": "5"}
 
 
 @pytest.mark.parametrize("option", ["-o=a.png", "--ipd=0.06", "--motion=a.bvh", "--frame=3"])

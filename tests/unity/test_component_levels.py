@@ -19,16 +19,16 @@ def test_the_level_follows_the_camera_or_what_is_asked_for(story: Story) -> None
     assert reported["asked"] == [str(levels[level]) for level in (1, 2, 0)]
     assert reported["nearest"] == [str(levels[level]) for level in (0, 2, 0)]  # for two cameras, then for one
     assert reported["still"] == [str(len(FRAME_ORDER))]
-    assert reported["geometry"] == [str(levels[0])]
+    assert reported["geometry"] == [str(levels[0])] * 2  # also where distance would choose
     assert reported["log"] == []
 
 
 def test_texels_are_measured_at_the_nearest_point_that_is_drawn(story: Story) -> None:
-    """That is the near plane, 0.25 m away, where the eye is within the avatar's box."""
+    """That is the near plane, 0.25 m away, where the eye is within the box; a scaled avatar has larger ones."""
     reported = story("MeasuresTexels", "first")
     focal = float(reported["focal"][0])
     seen = [tuple(map(float, line.split())) for line in reported["seen"]]
-    for found, wanted in zip(seen, [(0, focal / 0.25)] * 2 + [(2, focal / 2)] * 2, strict=True):
+    for found, wanted in zip(seen, [(0, focal / 0.25)] * 2 + [(2, focal / 2)] * 2 + [(2, 3 * focal / 2)], strict=True):
         assert found == pytest.approx(wanted, rel=1e-4)
     assert float(reported["between"][0]) == pytest.approx(2.5, rel=1e-4)  # the middle of eyes that are 1 m and 4 m away
 

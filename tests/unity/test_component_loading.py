@@ -115,7 +115,8 @@ def test_a_scene_keeps_every_setting_of_a_component(story: Story) -> None:
 def test_bytes_load_as_their_file_does(story: Story) -> None:
     reported = story("LoadsBytes", "first", "second", "damaged")
     name = synthetic_avatar(2).name
-    assert reported["state"] == [f"Ready {name}", "Empty", f"Ready {name}", "Failed ", "Failed ", "Empty"]
+    ready, failed, empty = f"Ready {name}", "Failed ", "Empty"
+    assert reported["state"] == [ready, empty, ready, failed, failed, empty, failed, ready]
     of_bytes, of_file = reported["message"]
     assert of_bytes.startswith("downloaded: ")
     assert of_bytes.partition(": ")[2] == of_file.partition(".muaavatar: ")[2] != ""

@@ -70,9 +70,14 @@ def test_a_timeline_may_begin_before_its_avatar_and_end_after_it(story: Story) -
     assert reported["log"] == []
 
 
+def test_an_avatar_that_a_timeline_leaves_for_another_goes_on_as_before(story: Story) -> None:
+    reported = story("ChangesAvatar", "first", "second")
+    assert (reported["left"], reported["taken"]) == (["True"], ["0 0.2"])
+
+
 def test_an_animation_of_time_and_playing_moves_the_avatar(story: Story) -> None:
     reported = story("AnimatesFields", "first")
-    assert reported["begins"] == reported["rests"] == ["0 0.125"]
+    assert reported["begins"] == reported["rests"] == reported["reloaded"] == ["0 0.125"]
     assert reported["goes"] == ["0 0.05"]
     plays, seconds = reported["plays"][0].split()
     assert plays == "True"

@@ -83,6 +83,15 @@ namespace Mua
                 Frames(1);
             }
             Say("moving", Recorder.Dispatches - before);
+            Time.timeScale = 0; // the game is paused
+            before = Recorder.Dispatches;
+            for (int i = 0; i < 72; i++)
+            {
+                face.SetBlendShapeWeight(1, i);
+                Frames(1);
+            }
+            Say("moving", Recorder.Dispatches - before);
+            Time.timeScale = 1;
             UnityEngine.Object.DestroyImmediate(face.gameObject);
             Frames(2);
             SayWeights("after", shown);
@@ -133,9 +142,12 @@ namespace Mua
             Say("allocated", GC.GetAllocatedBytesForCurrentThread() - before);
             shown.ResetExpressions();
             SayWeights("reset", shown);
-            SkinnedMeshRenderer face = MakeFace("head", "jawOpen", "mouthClose", "cheekPuff", "eyeBlinkLeft", "blend.smoking");
+            shown.SetExpression("jawOpen", 0.3f);
+            SayWeights("anew", shown);
+            shown.ResetExpressions();
+            SkinnedMeshRenderer face = MakeFace("head", "jawOpen", "mouthClose", "cheekPuff", "eyeBlinkLeft", "blend.smo_king", "SMOKING");
             shown.Face = face;
-            for (int shape = 0; shape < 5; shape++)
+            for (int shape = 0; shape < 6; shape++)
             {
                 face.SetBlendShapeWeight(shape, 90 - 20 * shape);
             }

@@ -34,6 +34,9 @@ namespace Mua
             Say("still", Dispatches(2) - Dispatches(1)); // a decode goes before the pose once
             shown.Views = AvatarViews.Splats | AvatarViews.Geometry;
             Say("geometry", Splats(shown));
+            shown.Level = AvatarLevel.Automatic;
+            Stand(Far);
+            Say("geometry", Splats(shown));
         }
 
         /// <summary>The detailed geometry, in the middle of a clip that plays at the coarsest level.</summary>
@@ -95,6 +98,13 @@ namespace Mua
                 both.Add(Matrix4x4.Scale(new Vector3(1, 1, -1)) * Matrix4x4.Translate(-eye), upright);
             }
             Say("between", instance.Sight.Seen(both).Distance);
+            shown.transform.localScale = 3 * Vector3.one;
+            Frames(1);
+            var large = new AvatarEyes();
+            large.Begin(400, 200, 0.25f);
+            Vector3 at = shown.Bounds.center - new Vector3(0, 0, shown.Bounds.extents.z + 2);
+            large.Add(Matrix4x4.Scale(new Vector3(1, 1, -1)) * Matrix4x4.Translate(-at), upright);
+            Say("seen", instance.Sight.Seen(large).Distance + " " + instance.Sight.Seen(large).Texel / shown.Decoded.Avatar.TexelLength);
         }
 
         private static void SharesBudget()

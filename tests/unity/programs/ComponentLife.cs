@@ -103,6 +103,12 @@ namespace Mua
             shown.Load((byte[])null);
             Frames(1);
             Say("state", shown.State);
+            shown.Load(File.ReadAllBytes(files[2]), "downloaded");
+            Settle(shown);
+            typeof(AvatarRenderer).GetField("file", Hidden).SetValue(shown, files[0]);
+            StandIns.Messages.Send(shown, "OnValidate");
+            Frames(1);
+            Settle(shown);
         }
 
         private static void Settle(AvatarRenderer shown)

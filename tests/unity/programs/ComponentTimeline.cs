@@ -15,11 +15,11 @@ namespace Mua
         {
             public readonly Playable Mixer;
             private readonly PlayableBehaviour behaviour;
-            private readonly AvatarRenderer avatar;
+            public AvatarRenderer Avatar; // that the track is bound to
 
             public Graph(AvatarRenderer avatar, params string[] names)
             {
-                this.avatar = avatar;
+                Avatar = avatar;
                 var track = ScriptableObject.CreateInstance<AvatarTrack>();
                 Mixer = track.CreateTrackMixer(default(PlayableGraph), null, names.Length);
                 behaviour = ((ScriptPlayable<AvatarMixer>)Mixer).GetBehaviour();
@@ -40,7 +40,7 @@ namespace Mua
                     Mixer.SetInputWeight(i, (float)weightsAndSeconds[2 * i]);
                     Mixer.GetInput(i).SetTime(weightsAndSeconds[2 * i + 1]);
                 }
-                behaviour.ProcessFrame(Mixer, default(FrameData), avatar);
+                behaviour.ProcessFrame(Mixer, default(FrameData), Avatar);
                 Frames(1);
             }
 
@@ -69,10 +69,10 @@ namespace Mua
             SayMoment("second", shown);
             graph.Evaluate(0.2, 0.3, 0.02, 0, 0); // scrubbed back, eased in
             SayMoment("scrubbed", shown);
-            graph.Evaluate(0.6, 0.75, 0.11, 0.25, 0.03);
+            graph.Evaluate(0.6, 0.75, 0.11, 0.25, 0.07);
             SayPose("blend", shown);
             SayParts(shown);
-            graph.Evaluate(0.6, 0.75, 0.11, 0.25, 0.03); // and once more, from elsewhere
+            graph.Evaluate(0.6, 0.75, 0.11, 0.25, 0.07); // and once more, from elsewhere
             SayPose("again", shown);
             graph.Evaluate(0.7, 0, 0, 0, 0); // between clips
             Say("gap", shown.ClipIndex + " " + (Math.Abs(shown.Seconds - own - Step) < 1e-6));
@@ -108,7 +108,7 @@ namespace Mua
         /// <summary>Local rotations of the moments that the blend above is made of.</summary>
         private static void SayParts(AvatarRenderer shown)
         {
-            foreach (Tuple<int, double> moment in new[] { Tuple.Create(0, 0.11), Tuple.Create(1, 0.03) })
+            foreach (Tuple<int, double> moment in new[] { Tuple.Create(0, 0.11), Tuple.Create(1, 0.07) })
             {
                 var graph = new Graph(shown, shown.Clips[moment.Item1]);
                 graph.Evaluate(5, 1, moment.Item2);
@@ -146,6 +146,19 @@ namespace Mua
             graph.Destroy();
         }
 
+        private static void ChangesAvatar()
+        {
+            AvatarRenderer shown = Show(files[0]), other = Show(files[1]);
+            Frames(9);
+            double own = shown.Seconds;
+            var graph = new Graph(shown, "");
+            graph.Evaluate(0, 1, 0.1);
+            graph.Avatar = other;
+            graph.Evaluate(0.1, 1, 0.2);
+            Say("left", Math.Abs(shown.Seconds - own - Step) < 1e-6);
+            SayMoment("taken", other);
+        }
+
         private static void AnimatesFields()
         {
             AvatarRenderer shown = Make("avatar").AddComponent<AvatarRenderer>();
@@ -156,6 +169,9 @@ namespace Mua
             SayMoment("begins", shown);
             Frames(10);
             SayMoment("rests", shown);
+            shown.Load(files[0]);
+            Until(shown);
+            SayMoment("reloaded", shown);
             Animate(shown, "time", 0.05f);
             Frames(1);
             SayMoment("goes", shown);

@@ -105,6 +105,11 @@ namespace Mua
             long before = System.GC.GetAllocatedBytesForCurrentThread();
             Frames(100);
             Say("allocated", System.GC.GetAllocatedBytesForCurrentThread() - before);
+            budget.Milliseconds = 5;
+            Time.timeScale = 0.1f; // in slow motion displayed frames take as long as ever
+            Frames(300);
+            Time.timeScale = 1;
+            Say("limited", first.SplatCount + second.SplatCount);
         }
 
         /// <summary>Most dispatches of any of so many frames.</summary>

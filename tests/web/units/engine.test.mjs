@@ -5,10 +5,12 @@ import { readFileSync } from "node:fs";
 import { beforeEach, test } from "node:test";
 import { Engine } from "../../../python/mua/web/engine.js";
 import { read } from "../../../python/mua/web/format/read.js";
+import { groundOf } from "../../../python/mua/web/placement.js";
 import { Renderer } from "../../../python/mua/web/renderer.js";
 
-const content = readFileSync(new URL("../../golden/synthetic.muaavatar", import.meta.url));
-const avatar = await read(Uint8Array.from(content).buffer);
+const golden = (name) =>
+  read(Uint8Array.from(readFileSync(new URL(`../../golden/${name}.muaavatar`, import.meta.url))).buffer);
+const [avatar, expressive] = [await golden("synthetic"), await golden("expressions")];
 const LONG = 10_000; // milliseconds that a device lasted
 const settled = () => new Promise((done) => setTimeout(done));
 const AWAY = { message: "The graphics device is away; try again in a moment." };
@@ -92,6 +94,52 @@ test("an avatar has a slot of the device from when it is shown until it is taken
   assert.deepEqual(devices[0].slots, [second.slot]);
   assert.deepEqual(engine.avatars, [second.handle]);
   assert.equal(first.handle.outsideTraining, 0);
+});
+
+test("the camera is put before the first avatar, and stays where the reader has it when others come", async () => {
+  const { engine } = await begun();
+  await engine.put(avatar, null, true);
+  const { distance } = engine.camera;
+  engine.camera.distance = 2 * distance;
+  await engine.put(avatar, null, true);
+  assert.deepEqual([distance !== 3.5, engine.camera.distance], [true, 2 * distance]);
+});
+
+test("weights that a page sets of a part stay when the whole avatar comes", async () => {
+  const { engine } = await begun();
+  const part = await engine.put(expressive, null, false);
+  part.handle.setExpressions({ jawOpen: 0.25 });
+  await engine.put(expressive, part, true);
+  part.handle.setExpressions({ eyeBlinkLeft: 0.5 });
+  assert.deepEqual([...part.weights].slice(0, 2), [0.25, 0.5]);
+});
+
+test("a clip in the place of one of its name has its own ground, and is listed once for all avatars", async () => {
+  const { engine } = await begun();
+  const entries = [];
+  for (let i = 0; i < 3; i++) entries.push(await engine.put({ ...avatar }, null, true));
+  const [{ name }] = avatar.clips;
+  for (const entry of entries) {
+    const ground = groundOf(entry, engine.playback);
+    const lifted = { ...avatar.clips[0], translation: avatar.clips[0].translation.map((at) => at + 1) };
+    entry.added = [lifted, { ...lifted, name: "dance" }];
+    engine.addClips(entry);
+    assert.ok(Math.abs(groundOf(entry, engine.playback) - ground) > 0.1);
+  }
+  assert.deepEqual(
+    engine.clips.map((clip) => clip.name),
+    [name, "dance"],
+  );
+});
+
+test("a player that was disposed of does not start, and a canvas without pixels has no picture", async () => {
+  const { engine } = await begun();
+  engine.canvas.height = 0;
+  await assert.rejects(engine.screenshot(), { message: /no picture of 0 x 0 pixels/ });
+  globalThis.requestAnimationFrame = () => 1;
+  engine.dispose();
+  engine.start();
+  assert.equal(engine.request, 0);
 });
 
 test("the whole avatar takes the slot of its part, and the handle stays", async () => {

@@ -2,6 +2,7 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import { cameraOf } from "../../../python/mua/web/camera.js";
 import { acceptFiles } from "../../../python/mua/web/drop.js";
 import { listen } from "../../../python/mua/web/hands.js";
 import { pressed } from "../../../python/mua/web/keys.js";
@@ -48,6 +49,36 @@ test("two fingers zoom as they go apart and move aside together", () => {
   assert.ok(camera.target[0] < 0);
 });
 
+test("the right button and shift move aside: what is at the target stays under the hand", () => {
+  for (const aside of [{ buttons: 2 }, { shiftKey: true }])
+    for (const [azimuth, elevation] of [
+      [0, 0],
+      [0.6, 0.9],
+    ]) {
+      const { camera, pointer } = held();
+      Object.assign(camera, { azimuth, elevation });
+      const { view, projection } = cameraOf(camera, [100, 100]);
+      pointer("down", 1, 50, 50, aside);
+      pointer("move", 1, 40, 75, aside);
+      const moved = [0, 1, 2].map((i) => [0, 1, 0][i] - camera.target[i]); // what was at the target, from the new one
+      const [x, y, z] = [0, 4, 8].map((row) => moved.reduce((sum, at, i) => sum + view[row + i] * at, 0));
+      const slopes = [x * projection[0], y * projection[5]].map((at) => (at / (camera.distance - z)) * 50);
+      assert.deepEqual([slopes.map((at) => at.toFixed(6)), camera.azimuth], [["-10.000000", "-25.000000"], azimuth]);
+    }
+});
+
+test("however far a hand goes, up stays up", () => {
+  for (const [below, steepest] of [
+    [1000, 89],
+    [-1000, -89],
+  ]) {
+    const { camera, pointer } = held();
+    pointer("down", 1, 0, 0);
+    pointer("move", 1, 0, below);
+    assert.ok(Math.abs(camera.elevation - (steepest / 180) * Math.PI) < 1e-12);
+  }
+});
+
 test("a wheel zooms by its notches, in pixels or in lines", () => {
   for (const given of [{ deltaY: -100 }, { deltaY: -100 / 33, deltaMode: 1 }]) {
     const { camera, wheel } = held();
@@ -70,6 +101,28 @@ test("shift and each arrow turn as a drag that way does", () => {
   ]);
   for (const other of ["ctrlKey", "metaKey", "altKey"]) assert.equal(keyed("ArrowUp", { [other]: true }), false);
   assert.equal(turns.length, 4);
+});
+
+test("arrows alone go a frame back and on", () => {
+  const steps = [];
+  for (const key of ["ArrowLeft", "ArrowRight"])
+    pressed(eventOf("keydown", { key, composedPath: () => [{}] }), { step: (frames) => steps.push(frames) });
+  assert.deepEqual(steps, [-1, 1]);
+});
+
+test("plus goes nearer, with and without the shift key, and minus farther", () => {
+  const zooms = [];
+  for (const key of ["+", "=", "-"])
+    pressed(eventOf("keydown", { key, composedPath: () => [{}] }), { zoom: (notches) => zooms.push(notches) });
+  assert.deepEqual(zooms, [1, 1, -1]);
+});
+
+test("a list or a field that has the focus keeps its letters", () => {
+  for (const kind of ["select", "input", "textarea"]) {
+    const focus = Object.assign(new HTMLElement(), { matches: (names) => names.split(", ").includes(kind) });
+    const event = eventOf("keydown", { key: "c", composedPath: () => [focus] });
+    assert.equal(pressed(event, { nextClip: () => assert.fail(kind) }), false);
+  }
 });
 
 test("files that are dropped are shown, and the mark of dropping goes with them", () => {

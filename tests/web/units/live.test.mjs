@@ -70,6 +70,15 @@ test("windows have numbers of their own, of all avatars", () => {
   assert.deepEqual([one.due, one.version], [due, version + 1], "drawn anew, and not decoded");
 });
 
+test("another face is another pose, though no joint moves", () => {
+  const live = posed([1, FRAME], [1, 2 * FRAME], [1, 3 * FRAME]);
+  live.sample({ ...pose(1), expressions: Float32Array.of(0.5) }, 10 + 4 * FRAME);
+  assert.deepEqual(
+    [live.settled, live.window.map(({ expressions }) => expressions?.[0])],
+    [false, [0.5, undefined, undefined]],
+  );
+});
+
 test("a decode may take some displayed frames where these are short", () => {
   const live = posed([1, FRAME]);
   live.sample(pose(2), 10 + 1.4 * FRAME);

@@ -2,6 +2,7 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import { framesAt, sample } from "../../../python/mua/web/clip.js";
 import { Playback } from "../../../python/mua/web/playback.js";
 
 const RATE = 30;
@@ -21,6 +22,22 @@ function playing(...avatars) {
   playback.begin(0);
   return Object.assign(playback, { told });
 }
+
+test("rounding takes no frame off a clip of another rate", () => {
+  assert.equal(framesAt({ ...clip("fast", 85), rate: 120 }, 90), 64);
+});
+
+test("a clip that a page loaded moves joints of its own", () => {
+  const skeleton = { names: ["root", "arm"], root: 0, bindTranslations: new Float64Array(6), translated: [] };
+  const loaded = {
+    ...clip("loaded", 1),
+    rotations: Float32Array.of(1, 0, 0, 0, 1, 0, 0, 0),
+    translation: new Float32Array(3),
+    translations: Float32Array.of(0, 2, 0),
+    translated: Int32Array.of(1),
+  };
+  assert.deepEqual([...sample(skeleton, loaded, 0, RATE).translations], [0, 0, 0, 0, 2, 0]);
+});
 
 test("a negative speed plays backward, from the first frame to the last", () => {
   const playback = playing(WALK);

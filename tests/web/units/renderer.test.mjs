@@ -153,6 +153,30 @@ test("an avatar that nobody sees takes no turn", () => {
   assert.ok(seen.done.includes("show"));
 });
 
+test("an avatar that one of several eyes sees takes its turn", () => {
+  const slots = [slotOf(), slotOf()];
+  const { renderer } = drawing();
+  const away = camerasOf({ ...LOOK.camera, azimuth: Math.PI, distance: -3 }, false, [100, 100]);
+  const eyes = [...away, ...camerasOf(LOOK.camera, false, [100, 100])];
+  for (const frame of [0, 0, 0, 0, 1, 1]) {
+    const posed = slots.map((slot) => posedOf(slot, { spread: true, frame, following: 1 - frame }));
+    renderer.pose("pass", posed, { ...LOOK, show: {} }, eyes);
+  }
+  assert.ok(slots.some(({ done }) => done.includes("part")));
+});
+
+test("of two budgets the smaller one holds, and that of milliseconds where distance chooses the level alone", () => {
+  const { renderer, pose } = drawing();
+  renderer.decodes.budget.splats = 100;
+  const budgets = [null, 50, 200].map((budget) => renderer.limited({ ...LOOK, budget, frameBudget: 10 }).budget);
+  assert.deepEqual(budgets, [100, 50, 100]);
+  const measured = ["auto", "full"].map((level) => {
+    pose([posedOf(slotOf())], { level, frameBudget: 10 });
+    return renderer.decodes.measured.splats;
+  });
+  assert.deepEqual(measured, [[2, 2], null]);
+});
+
 test("a picture that takes too long has fewer splats, where a number of milliseconds is asked for", () => {
   for (const [frameBudget, limited] of [
     [null, null],
@@ -214,6 +238,17 @@ function opened() {
   const context = { configure() {}, unconfigure() {} };
   return { gpu, renderer: new Renderer(device, { width: 4, height: 4, getContext: () => context }, {}) };
 }
+
+test("a canvas is drawn on as its page is, and given back with the device", async (context) => {
+  const [gpu, called] = [fakeGpu(), []];
+  const surface = { configure: ({ alphaMode }) => called.push(alphaMode), unconfigure: () => called.push("free") };
+  context.mock.method(Device, "open", async () => new Device({ info: {} }, gpu));
+  context.mock.timers.enable({ apis: ["setTimeout"] });
+  const renderer = await Renderer.open({ width: 4, height: 4, getContext: () => surface }, {});
+  renderer.destroy();
+  context.mock.timers.tick(60_000);
+  assert.deepEqual([called, gpu.destroyed], [["premultiplied", "free"], true]);
+});
 
 test("avatars that came and went leave no memory behind", async () => {
   const { gpu, renderer } = opened();

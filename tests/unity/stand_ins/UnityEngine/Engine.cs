@@ -71,17 +71,20 @@ namespace UnityEngine
     public static class Time
     {
         public static float deltaTime { get; private set; }
-        public static float unscaledDeltaTime { get { return deltaTime; } }
+        public static float unscaledDeltaTime { get; private set; }
+        public static float timeScale = 1;
         public static float time { get; private set; }
         public static double timeAsDouble { get { return time; } }
-        public static float realtimeSinceStartup { get { return time; } }
-        public static double realtimeSinceStartupAsDouble { get { return time; } }
+        public static float realtimeSinceStartup { get; private set; }
+        public static double realtimeSinceStartupAsDouble { get { return realtimeSinceStartup; } }
         public static int frameCount { get; private set; }
 
         internal static void Advance(float seconds)
         {
-            deltaTime = seconds;
-            time += seconds;
+            unscaledDeltaTime = seconds;
+            realtimeSinceStartup += seconds;
+            deltaTime = timeScale * seconds;
+            time += deltaTime;
             frameCount++;
         }
     }
