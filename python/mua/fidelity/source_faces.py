@@ -4,7 +4,6 @@ It loads little, because a process of its own draws these images.
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 from typing import NamedTuple
 
 import moderngl
@@ -15,7 +14,7 @@ from mua.avatar.camera import Camera, orbit
 from mua.fidelity.canvas import Area
 from mua.fidelity.painter import Painter
 from mua.fidelity.posed_source import Moment, skinned
-from mua.scene import Part, Scene
+from mua.scene import Scene
 
 SCREEN = (288, 288)  # width, height, pixels
 MOVES = 0.1  # of how far an expression moves any vertex: those that it moves more are in the picture
@@ -58,20 +57,11 @@ class _Source:
         places, moved = list(self._places), [np.empty((0, 3))]
         for index, part in enumerate(self._scene.parts):
             if vertices := [target.vertices for target in part.targets if target.name == name]:
-                places[index] = skinned(self._scene, _with_target(part, name), self._rest.nodes)
+                places[index] = skinned(self._scene, part, self._rest.nodes, {name: 1.0})
                 corners = np.unique(part.faces[np.isin(part.faces, np.concatenate(vertices)).any(axis=1)])
                 moved += [at[index][corners] for at in (self._places, places)]
         area = Area.of_points(np.concatenate(moved), self._camera)
         return Patch(area, area.of(self.at_rest) if area.empty else self._paint(places, self._camera, area))
-
-
-def _with_target(part: Part, name: str) -> Part:
-    """The part with one of its targets at weight 1."""
-    positions = part.positions.copy()
-    for target in part.targets:
-        if target.name == name:
-            positions[target.vertices] += target.offsets
-    return replace(part, positions=positions)
 
 
 def camera_of(scene: Scene, rest: Moment) -> Camera:
