@@ -72,6 +72,13 @@ def test_reads_texture_beside_the_file(tmp_path: Path) -> None:
     assert read(glb, tmp_path).materials[0].image.shape == PICTURE.shape
 
 
+def test_texture_that_is_missing_is_named(tmp_path: Path) -> None:
+    glb = textured(PICTURE)
+    glb.json["images"] = [{"uri": "cloth.png"}]
+    with pytest.raises(InputError, match=r"images\[0\]\.uri names cloth\.png, which is not there; put it beside"):
+        read(glb, tmp_path)
+
+
 def test_texture_transform_scales_turns_and_moves(tmp_path: Path) -> None:
     glb = textured(PICTURE)
     transform = {"offset": [0.1, 0.2], "rotation": np.pi / 2, "scale": [2, 3]}
@@ -87,7 +94,7 @@ def test_texture_transform_scales_turns_and_moves(tmp_path: Path) -> None:
 def test_texture_that_is_no_image_is_named(tmp_path: Path) -> None:
     glb = textured(PICTURE)
     glb.json["images"][0]["bufferView"] = 0
-    with pytest.raises(InputError, match=r"images\[0\] is not a PNG"):
+    with pytest.raises(InputError, match=r"images\[0\] is not a PNG.*: its content is no known kind of picture"):
         read(glb, tmp_path)
 
 

@@ -21,6 +21,7 @@ from mua.fidelity.source_faces import Patch
 from mua.fidelity.source_process import SourceProcess
 from mua.fidelity.splat_faces import StillFace
 from mua.fidelity.splats import SplatPainter
+from mua.pose.clip import Clip
 from mua.rig.character import Character
 from mua.scene import Source
 from mua.teachers.simulated.still import StillTeacher
@@ -50,6 +51,16 @@ def still_face(character: Character, teacher: StillTeacher) -> StillFace:
 def at_rest(character: Character) -> tuple[Source, Moment]:
     assert character.source is not None
     return character.source, Poser(character.source, character.skeleton).rest()
+
+
+def test_the_source_makes_the_faces_of_a_clip_too(tmp_path: Path) -> None:
+    character = grinning_character(tmp_path)
+    pose = character.skeleton.bind_pose
+    clip = Clip("lean", 30.0, pose.rotations[None], pose.translations[None], expressions=np.array([[1.0, 0.0]]))
+    fidelity, _ = fidelity_of(character, (clip,), texels=TEXELS)
+    assert fidelity is not None
+    rest, leaning = fidelity.poses
+    assert leaning.agreement.iou > rest.agreement.iou - 0.01
 
 
 def test_expressions_look_like_the_files_own_targets(tmp_path: Path) -> None:

@@ -275,6 +275,14 @@ def test_wrong_colours_are_measured_and_reported(tmp_path: Path) -> None:
     assert any("The colours of splats and character" in sentence for sentence in warnings)
 
 
+def test_a_figure_below_its_limit_never_reads_as_the_limit() -> None:
+    nearly = Agreement(4, 0, 0, 3 * 4 / 10**2.9997)  # 29.997 dB
+    image = picture([1], [1])
+    shot = Shot(image, image, nearly, "front", (0, 0), "head", 0.0)
+    (sentence,) = report.sentences(Fidelity((PoseFidelity("rest", (shot,)),)))
+    assert "only 29.9 dB" in sentence
+
+
 def test_a_missing_part_is_measured_and_the_joint_named(tmp_path: Path) -> None:
     character = column(tmp_path)
     top = character.mesh.vertices[character.mesh.faces][:, :, 1].min(axis=1) >= 1.0 - 1e-6

@@ -3,7 +3,7 @@
 import io
 
 import numpy as np
-from PIL import Image
+from PIL import Image, UnidentifiedImageError
 
 from mua.arrays import Array
 
@@ -19,6 +19,8 @@ def decode_image(content: bytes) -> Array:
     try:
         with Image.open(io.BytesIO(content)) as image:
             return np.asarray(in_8_bits(image).convert("RGBA"))
+    except UnidentifiedImageError as unknown:  # whose text names an object in memory
+        raise ValueError("its content is no known kind of picture") from unknown
     except (OSError, SyntaxError, Image.DecompressionBombError) as broken:
         raise ValueError(str(broken)) from broken
 

@@ -9,6 +9,7 @@ import numpy as np
 from mua.arrays import Array, unique_rows
 from mua.atlas.character_surfaces import Surfaces
 from mua.characters.alpha import NOTHING_SAID, Alphas, with_alphas
+from mua.characters.apart import apart_notes, require_apart
 from mua.characters.bind_pose import Bind, bind_pose
 from mua.characters.collapsed import without_collapsed
 from mua.characters.correction import corrected
@@ -76,6 +77,7 @@ def assemble(
     scene = without_collapsed(scene, path)
     scene = replace(scene, parts=tuple(replace(part, weights=weighted(part.weights)) for part in scene.parts))
     bind = bind_pose(scene)
+    require_apart(scene, bind, path)
     mesh = _merge(scene, bind)
     scene, bind, mesh = _without_outlines(scene, bind, mesh)
     used = mesh.vertices[np.unique(mesh.faces)]
@@ -97,8 +99,10 @@ def assemble(
     looks = LOOKS if gazing is named else (*LOOKS, *GAZE)
     scene = gazing
     size_notes = tuple(f"{note} {OTHER_SIZE}" for note in change.size_notes)
+    apart = apart_notes(scene, bind, mesh.vertices)
     mesh = _outward(_weld(mesh))
     unseen = () if mesh.expressions is None else unfolding(mesh.expressions, mesh.vertices, mesh.faces)
+    notes = (*size_notes, *change.notes, *mesh.notes, *unseen)
     rigged = rigid_skeleton(scene, bind)
     joint_of_node = np.zeros(len(scene.parents), np.int32)
     joint_of_node[rigged.nodes] = np.arange(len(rigged.nodes))
@@ -120,7 +124,7 @@ def assemble(
         source=Source(scene, rigged.nodes),
         corner_colors=None if (mesh.colors == 1).all() else mesh.colors,
         roles=roles_of(scene, rigged),
-        notes=(*scene.notes, *_rigid_parts(scene), *size_notes, *change.notes, *mesh.notes, *unseen, *rigged.notes),
+        notes=(*scene.notes, *apart, *_rigid_parts(scene), *notes, *rigged.notes),
         unit=change.unit,
         size_notes=size_notes,
     )

@@ -11,7 +11,15 @@ PLAIN = (
     "The whole character is drawn in one colour: its surface has texture coordinates, but no material has a picture. "
     "Export it again with its textures, if it should have some. Materials: {}."
 )
-LOOKS_WRONG = (LOST, PLAIN)  # what anybody should look at before a bake
+FIGURES = (
+    "The file holds figures that stand side by side on skeletons of their own, and they become one avatar; "
+    "--leave-out NAME leaves one out. Beside the largest: {}."
+)
+STRAY = (
+    "Vertices lie so far away that the figure is tiny beside them; delete them in Blender, or leave out their mesh "
+    "with --leave-out: {}."
+)
+LOOKS_WRONG = (LOST, PLAIN, FIGURES, STRAY)  # what anybody should look at before a bake
 SHOWN = 8  # names that a sentence lists before it counts the rest
 
 

@@ -108,7 +108,7 @@ def compare(
 
 def sittings_of(character: Character, clips: Sequence[Clip], source: Source) -> list[Sitting]:
     """The poses that a character is drawn in: as the file stands, and in frames spread over `clips`."""
-    poser = Poser(source, character.skeleton)
+    poser = Poser(source, character.skeleton, character.expression_names)
     moments = [poser.rest(), *(poser.of_clip(clip, frame) for clip, frame in spread(clips, POSED))]
     views = [ROUND, *({side: degrees} for side, degrees in itertools.islice(itertools.cycle(IN_MOTION), POSED))]
     return [Sitting(*sitting) for sitting in zip(moments, views, strict=False)]

@@ -84,7 +84,7 @@ def fit(
     """
     rng = np.random.default_rng(0)
     side = round(SIDE * teacher.rig.texels.size)
-    poser = Poser(source, character.skeleton)
+    poser = Poser(source, character.skeleton, character.expression_names)
     with opened() as context:
         parts, materials = source.scene.parts, source.scene.materials
         paint = Painter(context, parts, materials, screen=(side, side), samples=SAMPLES)
@@ -189,7 +189,7 @@ def _shown(teacher: StillTeacher, moment: Moment, source: Source, character: Cha
     centres = place_splats(texel_dq, surface, texture).centres.numpy()
     return _Shown(
         moment=moment,
-        drawn=[skinned(scene, part, moment.nodes) for part in scene.parts],
+        drawn=[skinned(scene, part, moment.nodes, moment.face) for part in scene.parts],
         texel_dq=texel_dq,
         surface=surface,
         texture=texture,

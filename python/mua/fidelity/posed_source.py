@@ -1,5 +1,6 @@
 """The source character in a pose: its own nodes, its own weights, linear blend skinning as file formats define it."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -26,13 +27,14 @@ class Moment:
     nodes: Array  # [nodes, 4, 4] node to world, metres
     yaw: float  # turn of the body since the bind pose about +Y, radians
     stretches: Stretches | None = None  # stretches in this frame
+    face: Mapping[str, float] | None = None  # expressions that move the meshes, and their weights
 
 
 class Poser:
     """Brings poses of a character to the nodes of its source."""
 
-    def __init__(self, source: Source, skeleton: Skeleton) -> None:
-        self._source, self._skeleton = source, skeleton
+    def __init__(self, source: Source, skeleton: Skeleton, expressions: Sequence[str] = ()) -> None:
+        self._source, self._skeleton, self._expressions = source, skeleton, expressions
         self._rest = rest_pose(source, skeleton)
         self._to_bind = np.linalg.inv(self._carried(self._rest))
         self._holders = _holders(source)
@@ -48,7 +50,11 @@ class Poser:
         own = [m for m in self._source.scene.motions if m.name == clip.name and len(m.worlds) == len(clip)]
         nodes = own[0].worlds[frame] if own and own[0].rate == clip.rate else self.by_joints(pose)
         stretches = clip.cut(slice(frame, frame + 1)).stretches
-        return Moment(f"{clip.name}, frame {frame}", pose, nodes, self._yaw(pose), stretches)
+        return Moment(f"{clip.name}, frame {frame}", pose, nodes, self._yaw(pose), stretches, self._face(pose))
+
+    def _face(self, pose: Pose) -> dict[str, float]:
+        weights = () if pose.expressions is None else pose.expressions
+        return {name: float(weight) for name, weight in zip(self._expressions, weights, strict=False) if weight}
 
     def by_joints(self, pose: Pose) -> Array:
         """The nodes [nodes, 4, 4] at rest, moved by what each joint does between rest and `pose`."""
@@ -78,17 +84,29 @@ class Poser:
         return float(angles[most if agreeing[most] > AGREED * self._mass.sum() else root])
 
 
-def skinned(scene: Scene, part: Part, nodes: Array) -> Array:
-    """A part's vertices [N, 3] in the world, for nodes [nodes, 4, 4]: the weighted mean of what each joint makes."""
-    skin = scene.skins[part.skin]
+def skinned(scene: Scene, part: Part, nodes: Array, face: Mapping[str, float] | None = None) -> Array:
+    """A part's vertices [N, 3] in the world, for nodes [nodes, 4, 4]: the weighted mean of what each joint makes.
+
+    Expressions of `face` move them first, each by its weight.
+    """
+    skin, positions = scene.skins[part.skin], expressed(part, face or {})
     spaces = nodes[skin.joints] @ skin.inverse_binds
     weights = weighted(part.weights)
-    placed = np.zeros_like(part.positions)
+    placed = np.zeros_like(positions)
     for k in np.flatnonzero(weights.any(axis=0)):
         space = spaces[part.joints[:, k]]
-        moved = np.einsum("nij,nj->ni", space[:, :3, :3], part.positions) + space[:, :3, 3]
+        moved = np.einsum("nij,nj->ni", space[:, :3, :3], positions) + space[:, :3, 3]
         placed += weights[:, k, None] * moved
     return placed
+
+
+def expressed(part: Part, face: Mapping[str, float]) -> Array:
+    """A part's vertices [N, 3] moved by expressions, each by its weight, before any joint moves them."""
+    positions = part.positions.copy()
+    for target in part.targets:
+        if target.name in face:
+            positions[target.vertices] += face[target.name] * target.offsets
+    return positions
 
 
 def dominant_joints(scene: Scene, part: Part) -> Array:

@@ -1,5 +1,6 @@
 """The comparison of splats with their source as sentences and numbers."""
 
+from math import floor
 from typing import Any
 
 from mua.fidelity.compare import Fidelity, PoseFidelity, Shot
@@ -25,13 +26,13 @@ def sentences(fidelity: Fidelity) -> tuple[str, ...]:
     least = min(fidelity.poses, key=lambda pose: pose.agreement.iou)
     if least.agreement.iou < GOOD_IOU:
         found.append(
-            f"The silhouettes of splats and character overlap by only {100 * least.agreement.iou:.1f} % in the pose "
-            f"{least.pose!r}: {_excess(least)}; worst at {_where(least.worst)}."
+            f"The silhouettes of splats and character overlap by only {_below(100 * least.agreement.iou)} % in the "
+            f"pose {least.pose!r}: {_excess(least)}; worst at {_where(least.worst)}."
         )
     least = min(fidelity.poses, key=lambda pose: pose.agreement.psnr)
     if least.agreement.psnr < GOOD_PSNR:
         found.append(
-            f"The colours of splats and character have a PSNR of only {least.agreement.psnr:.1f} dB in the pose "
+            f"The colours of splats and character have a PSNR of only {_below(least.agreement.psnr)} dB in the pose "
             f"{least.pose!r} (from {GOOD_PSNR:.0f} dB on they look alike); worst at {_where(least.worst)}."
         )
     return (*found, *_face_sentences(fidelity.face))
@@ -90,6 +91,11 @@ def as_dict(fidelity: Fidelity) -> dict[str, Any]:
 def _place(shot: Shot) -> dict[str, Any]:
     column, row = shot.place
     return {"view": shot.view, "joint": shot.joint, "column": column, "row": row, "difference": shot.difference}
+
+
+def _below(figure: float) -> str:
+    """A figure rounded down, so that one below a limit never reads as the limit."""
+    return f"{floor(10 * figure) / 10:.1f}"
 
 
 def _where(shot: Shot) -> str:

@@ -14,7 +14,7 @@ from mua.arrays import Array
 from mua.avatar.camera import Camera, orbit
 from mua.fidelity.canvas import Area
 from mua.fidelity.painter import SAMPLES, Painter
-from mua.fidelity.posed_source import Moment, skinned
+from mua.fidelity.posed_source import Moment, expressed, skinned
 from mua.scene import Part, Scene
 
 SCREEN = (288, 288)  # width, height, pixels
@@ -68,25 +68,17 @@ class _Source:
             if vertices := [target.vertices for target in part.targets if target.name == name]:
                 at = np.unique(np.concatenate(vertices))
                 places[index] = self._places[index].copy()
-                places[index][at] = skinned(self._scene, _some(_with_target(part, name), at), self._rest.nodes)
+                places[index][at] = skinned(self._scene, _with_target(part, name, at), self._rest.nodes)
                 corners = np.unique(part.faces[_among(at, part)[part.faces].any(axis=1)])
                 moved += [of[index][corners] for of in (self._places, places)]
         area = Area.of_points(np.concatenate(moved), self._camera)
         return Patch(area, area.of(self.at_rest) if area.empty else self._paint(places, self._camera, area))
 
 
-def _with_target(part: Part, name: str) -> Part:
-    """The part with one of its targets at weight 1."""
-    positions = part.positions.copy()
-    for target in part.targets:
-        if target.name == name:
-            positions[target.vertices] += target.offsets
-    return replace(part, positions=positions)
-
-
-def _some(part: Part, at: Array) -> Part:
-    """Some of a part's vertices, to be skinned."""
-    return replace(part, positions=part.positions[at], joints=part.joints[at], weights=part.weights[at])
+def _with_target(part: Part, name: str, at: Array) -> Part:
+    """Some vertices of a part with one of its targets at weight 1."""
+    positions = expressed(part, {name: 1.0})[at]
+    return replace(part, positions=positions, joints=part.joints[at], weights=part.weights[at], targets=())
 
 
 def _among(at: Array, part: Part) -> Array:

@@ -27,7 +27,7 @@ class Sitting(NamedTuple):
 
     def places(self, scene: Scene) -> list[Array]:
         """The vertices [N, 3] of each part, world, metres."""
-        return [skinned(scene, part, self.moment.nodes) for part in scene.parts]
+        return [skinned(scene, part, self.moment.nodes, self.moment.face) for part in scene.parts]
 
     def cameras(self, scene: Scene, places: Sequence[Array]) -> list[Camera]:
         """The camera of each view; in each the whole figure is in the image."""

@@ -174,6 +174,8 @@ class Document:
                 raise self.error(f"{field} holds a data URI that is not base64: {broken}") from broken
         try:
             return (self.path.parent / urllib.parse.unquote(uri)).read_bytes()
+        except FileNotFoundError as missing:
+            raise self.error(f"{field} names {uri}, which is not there; put it beside the file") from missing
         except (OSError, ValueError) as missing:
             raise self.error(f"{field} names {uri}, which cannot be read: {missing}") from missing
 
