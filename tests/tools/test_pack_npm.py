@@ -53,7 +53,7 @@ export const device: GPUDevice | null = null;
 
 @pytest.fixture(scope="module")
 def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder in which the package is installed, and in which TypeScript knows nothing of WebGPU, as before version 6."""
+    """A folder in which the package is installed, where TypeScript does not know WebGPU, as version 5.9."""
     if missing := pack_npm.lacking():
         pytest.skip(missing)
     folder = tmp_path_factory.mktemp("npm")

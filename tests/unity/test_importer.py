@@ -194,7 +194,7 @@ def test_the_scene_view_frames_and_picks_what_is_drawn(story: Story, sound: Path
 
 
 def test_an_opened_prefab_is_apart_from_the_scene(story: Story, sound: Path) -> None:
-    """The scene view shows the avatars of the prefab, the game view those of the scene; their shadows fall there too."""
+    """The scene view shows the avatars of the prefab, the game view those of the scene, with shadows."""
     count = len(synthetic_avatar().rig.texels.texels)
     one, two = str(count + count % 2), str(2 * (count + count % 2))
     reported = story("OpensPrefab", sound)
