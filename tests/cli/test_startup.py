@@ -3,6 +3,7 @@
 import importlib.metadata
 import json
 import runpy
+import signal
 import sys
 from pathlib import Path
 
@@ -141,3 +142,7 @@ def test_quiet_prints_nothing_but_errors(avatar_file: Path, tmp_path: Path) -> N
 )
 def test_importing_does_not_load_what_may_not_be_needed(modules: str, absent: tuple[str, ...]) -> None:
     assert python(f"import {modules}; print(sorted(set({absent}) & set(sys.modules)))") == Ended(0, "[]\n", "")
+
+
+def test_ctrl_c_before_a_command_is_loaded_ends_it_in_silence() -> None:
+    assert python("import mua.cli; raise KeyboardInterrupt") == Ended(-signal.SIGINT, "", "")

@@ -194,14 +194,17 @@ def test_the_scene_view_frames_and_picks_what_is_drawn(story: Story, sound: Path
 
 
 def test_an_opened_prefab_is_apart_from_the_scene(story: Story, sound: Path) -> None:
-    """The scene view shows the avatars of the prefab, the game view those of the scene."""
+    """The scene view shows the avatars of the prefab, the game view those of the scene, with shadows."""
     count = len(synthetic_avatar().rig.texels.texels)
     one, two = str(count + count % 2), str(2 * (count + count % 2))
-    assert story("OpensPrefab", sound)["seen"] == [
+    reported = story("OpensPrefab", sound)
+    assert reported["shadow"] == [["True", "1"], ["True", "2"]]
+    assert reported["seen"] == [
         *(["view", "1", one], ["game", "0", "0"]),  # the prefab's alone
         *(["view", "1", one], ["game", "1", one]),
         *(["view", "2", one], ["game", "1", one]),  # with the prefab's mesh
         *(["view", "2", two], ["game", "2", two]),  # both avatars in the scene
+        *(["view", "1", one], ["game", "2", two]),  # one of them, with its mesh, is hidden in the Hierarchy
     ]
 
 

@@ -149,7 +149,7 @@ namespace Mua
             {
                 Decoded.Show();
             }
-            Surface.CastShadow(Views, Bounds, owner.gameObject.layer);
+            Surface.CastShadow(Views, Bounds, owner.gameObject);
         }
 
         /// <summary>Asks for the decodes of this displayed frame.</summary>

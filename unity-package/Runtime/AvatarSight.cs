@@ -21,13 +21,15 @@ namespace Mua
 
         /// <summary>
         /// Whether a camera draws its layer, and in the editor what its scene belongs to: the scene view shows an opened prefab
-        /// alone, the game view never shows it.
+        /// alone, the game view never shows it, and what the Hierarchy hides is hidden in scene views.
         /// </summary>
         public bool IsShownTo(Camera camera)
         {
             bool isOnLayer = (camera.cullingMask & (1 << owner.gameObject.layer)) != 0;
 #if UNITY_EDITOR
-            return isOnLayer
+            bool isHidden = camera.cameraType == CameraType.SceneView
+                && UnityEditor.SceneVisibilityManager.instance.IsHidden(owner.gameObject);
+            return isOnLayer && !isHidden
                 && UnityEditor.SceneManagement.StageUtility.IsGameObjectRenderedByCamera(owner.gameObject, camera);
 #else
             return isOnLayer;

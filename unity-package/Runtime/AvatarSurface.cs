@@ -52,7 +52,7 @@ namespace Mua
         }
 
         /// <summary>Makes the lights of this frame draw the template, in a box of Unity's world, metres.</summary>
-        public void CastShadow(AvatarViews views, Bounds bounds, int layer)
+        public void CastShadow(AvatarViews views, Bounds bounds, GameObject owner)
         {
             if (!frame.IsDecoded || !IsReady(views, AvatarViews.Shadow))
             {
@@ -60,12 +60,16 @@ namespace Mua
             }
             var parameters = new RenderParams(draw.Material)
             {
-                layer = layer,
+                layer = owner.layer,
                 worldBounds = bounds,
                 matProps = draw.BindShadow(frame),
                 shadowCastingMode = ShadowCastingMode.ShadowsOnly,
                 receiveShadows = false,
             };
+#if UNITY_EDITOR
+            parameters.overrideSceneCullingMask = true; // an opened prefab and the scene cast none into each other
+            parameters.sceneCullingMask = owner.sceneCullingMask;
+#endif
             Graphics.RenderPrimitivesIndexed(parameters, MeshTopology.Triangles, templateIndices, templateIndices.count);
         }
 

@@ -5,9 +5,17 @@ import { eyeInRoom, NEAR } from "./camera.js";
 import { Memory } from "./device.js";
 import { AvatarError } from "./error.js";
 import { COLOR } from "./scene.js";
-import { bindingOf, requestSession } from "./webxr.js";
+import { requestSession } from "./webxr.js";
 
-/** @typedef {import("./webxr.js").SubImage} SubImage */
+/** @typedef {import("./webxr.js").Session} Session */
+/** @typedef {{x: number, y: number, width: number, height: number}} Viewport pixels */
+/** @typedef {{colorTexture: GPUTexture, viewport: Viewport, getViewDescriptor: () => GPUTextureViewDescriptor}} SubImage */
+/**
+ * @typedef {object} Binding of a session to a device
+ * @property {() => GPUTextureFormat} getPreferredColorFormat
+ * @property {(asked: {colorFormat: GPUTextureFormat}) => object} createProjectionLayer
+ * @property {(layer: object, view: import("./webxr.js").View) => SubImage} getViewSubImage
+ */
 /** @typedef {import("./camera.js").Camera} Camera */
 /**
  * @typedef {object} Asks what a headset asks of the player
@@ -38,7 +46,7 @@ struct Corner { @builtin(position) position: vec4f, @location(0) at: vec2f };
 export class Headset {
   /** Ask for the headset; only while the browser handles a click or a key. @throws {AvatarError} where it is refused */
   static async open(/** @type {import("./device.js").Device} */ device, /** @type {Asks} */ asks) {
-    /** @type {import("./webxr.js").Session | undefined} */
+    /** @type {Session | undefined} */
     let session;
     try {
       session = await requestSession();
@@ -49,7 +57,7 @@ export class Headset {
     }
   }
 
-  /** @param {import("./device.js").Device} device @param {import("./webxr.js").Session} session @param {object} space @param {Asks} asks */
+  /** @param {import("./device.js").Device} device @param {Session} session @param {object} space @param {Asks} asks */
   constructor(device, session, space, asks) {
     this.device = device;
     this.session = session;
@@ -135,4 +143,12 @@ export class Headset {
     this.picture = null;
     this.asks.ended();
   }
+}
+
+/** @returns {Binding} */
+function bindingOf(/** @type {Session} */ session, /** @type {GPUDevice} */ gpu) {
+  const { XRGPUBinding } = /** @type {{XRGPUBinding: new (session: Session, gpu: GPUDevice) => Binding}} */ (
+    /** @type {unknown} */ (globalThis)
+  );
+  return new XRGPUBinding(session, gpu);
 }

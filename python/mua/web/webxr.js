@@ -1,4 +1,5 @@
-// Whether a headset can show the player, and what is used of WebXR, which TypeScript does not describe.
+// Whether a headset can show the player, and what is used of WebXR, which TypeScript does not describe. WebGPU is not named here:
+// the types of the player must hold where TypeScript does not know it.
 
 /** @typedef {{matrix: Float32Array, inverse: {matrix: Float32Array}}} Transform column by column */
 /** @typedef {{projectionMatrix: Float32Array, transform: Transform}} View of one eye; its depth goes from 0 to w */
@@ -13,14 +14,6 @@
 /** @typedef {EventTarget & {
  *   isSessionSupported: (mode: string) => Promise<boolean>,
  *   requestSession: (mode: string, asked: {requiredFeatures: string[]}) => Promise<Session>}} System
- */
-/** @typedef {{x: number, y: number, width: number, height: number}} Viewport pixels */
-/** @typedef {{colorTexture: GPUTexture, viewport: Viewport, getViewDescriptor: () => GPUTextureViewDescriptor}} SubImage */
-/**
- * @typedef {object} Binding of a session to a device
- * @property {() => GPUTextureFormat} getPreferredColorFormat
- * @property {(asked: {colorFormat: GPUTextureFormat}) => object} createProjectionLayer
- * @property {(layer: object, view: View) => SubImage} getViewSubImage
  */
 
 const MODE = "immersive-vr";
@@ -46,12 +39,4 @@ export async function requestSession() {
   const xr = webXR();
   if (!xr) throw new Error("this browser has no WebXR with WebGPU");
   return xr.requestSession(MODE, { requiredFeatures: ["webgpu", "local-floor"] });
-}
-
-/** @returns {Binding} */
-export function bindingOf(/** @type {Session} */ session, /** @type {GPUDevice} */ gpu) {
-  const { XRGPUBinding } = /** @type {{XRGPUBinding: new (session: Session, gpu: GPUDevice) => Binding}} */ (
-    /** @type {unknown} */ (globalThis)
-  );
-  return new XRGPUBinding(session, gpu);
 }

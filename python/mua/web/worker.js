@@ -2,7 +2,7 @@
 // whose bytes change hands without a copy, or what is wrong with it.
 
 import { AvatarError } from "./error.js";
-import { loadHere } from "./load.js";
+import { loadHere } from "./load_here.js";
 
 self.onmessage = async ({ data: source }) => {
   try {

@@ -168,14 +168,26 @@ namespace Mua.Editor
             view.transform.position = game.transform.position = new Vector3(0, 1, -5);
             Stages.Opened.Add(opened.gameObject);
             SeenBy(view, game);
+            SayShadow();
             AvatarRenderer other = AvatarObject.Create(asset, null, new Vector3(0.5f, 0, 0)).GetComponent<AvatarRenderer>();
             SeenBy(view, game);
+            SayShadow();
             opened.Views = AvatarViews.Splats | AvatarViews.Template;
             SeenBy(view, game);
             Stages.Opened.Clear();
             SeenBy(view, game);
+            UnityEditor.SceneVisibilityManager.instance.Hide(opened.gameObject, false);
+            SeenBy(view, game);
+            UnityEditor.SceneVisibilityManager.instance.ShowAll();
             UnityEngine.Object.DestroyImmediate(opened.gameObject);
             UnityEngine.Object.DestroyImmediate(other.gameObject);
+        }
+
+        /// <summary>Where the shadow falls of the avatar that was made last, which is decoded.</summary>
+        private static void SayShadow()
+        {
+            PlayerLoop.Frame(1);
+            Say("shadow", Recorder.LastRender.overrideSceneCullingMask, Recorder.LastRender.sceneCullingMask);
         }
 
         /// <summary>Draws of each camera, and splats of the avatars that it shows.</summary>

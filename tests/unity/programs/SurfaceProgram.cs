@@ -76,7 +76,7 @@ namespace Mua
             AvatarFrame frame = actors[actors.Count - 1].Frame;
             var surface = new AvatarSurface(resources, frame);
             int made = Recorder.Made;
-            surface.CastShadow(All, new Bounds(), 0); // before there is a pose
+            surface.CastShadow(All, new Bounds(), new GameObject("shown")); // before there is a pose
             Collect(surface, AvatarViews.Splats);
             Say("idle", Recorder.Made - made, Recorder.Renders, Draws.Count);
             Follow(arguments[3], actors[actors.Count - 1]);
@@ -131,7 +131,7 @@ namespace Mua
         /// <summary>Draws all, in the order of a frame: first what the lights see.</summary>
         private static void Run(AvatarSurface surface)
         {
-            surface.CastShadow(All, new Bounds(), 0);
+            surface.CastShadow(All, new Bounds(), new GameObject("shown"));
             Collect(surface, All);
             for (int i = 0; i < Draws.Count; i++)
             {

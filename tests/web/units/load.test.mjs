@@ -3,7 +3,8 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
-import { load as loadApart, loadHere } from "../../../python/mua/web/load.js";
+import { load as loadApart } from "../../../python/mua/web/load.js";
+import { loadHere } from "../../../python/mua/web/load_here.js";
 
 const sound = Uint8Array.from(readFileSync(new URL("../../golden/synthetic.muaavatar", import.meta.url)));
 const load = (content, name) => loadHere(name ? new File([content], name) : new Blob([content]), () => {});

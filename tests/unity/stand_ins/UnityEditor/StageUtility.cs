@@ -1,4 +1,4 @@
-// Stand-in. Source: Unity 6000.0 scripting reference, StageUtility.
+// Stand-in. Source: Unity 6000.0 scripting reference, StageUtility, SceneVisibilityManager.
 namespace UnityEditor.SceneManagement
 {
     public static class StageUtility
@@ -13,8 +13,19 @@ namespace UnityEditor.SceneManagement
     }
 }
 
-namespace StandIns
+namespace UnityEditor
 {
-    /// <summary>Objects of the prefab that is open; a scene view shows them alone. Not part of Unity's API.</summary>
-    public static class Stages { public static readonly System.Collections.Generic.List<UnityEngine.GameObject> Opened = new System.Collections.Generic.List<UnityEngine.GameObject>(); }
+    public class ScriptableSingleton<T> where T : class, new()
+    {
+        public static T instance { get; } = new T();
+    }
+
+    public class SceneVisibilityManager : ScriptableSingleton<SceneVisibilityManager>
+    {
+        private UnityEngine.GameObject hidden;
+
+        public void Hide(UnityEngine.GameObject gameObject, bool includeDescendants) { hidden = gameObject; }
+        public void ShowAll() { hidden = null; }
+        public bool IsHidden(UnityEngine.GameObject gameObject, bool includeDescendants = false) { return hidden == gameObject; }
+    }
 }

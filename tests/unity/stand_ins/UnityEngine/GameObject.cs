@@ -153,6 +153,7 @@ namespace UnityEngine
 
         public Transform transform { get; private set; }
         public int layer { get; set; }
+        public ulong sceneCullingMask { get { return StandIns.Stages.Opened.Contains(this) ? 1UL : 2UL; } } // of the opened prefab, of the scene
         public string tag { get; set; }
         public bool activeSelf { get { return active; } }
         public bool activeInHierarchy
@@ -354,4 +355,10 @@ namespace UnityEngine
         public void LookAt(Transform target) { LookAt(target.position); }
         public IEnumerator GetEnumerator() { return children.GetEnumerator(); }
     }
+}
+
+namespace StandIns
+{
+    /// <summary>Objects of the prefab that is open; a scene view shows them alone. Not part of Unity's API.</summary>
+    public static class Stages { public static readonly List<UnityEngine.GameObject> Opened = new List<UnityEngine.GameObject>(); }
 }

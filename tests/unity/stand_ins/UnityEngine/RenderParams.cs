@@ -16,5 +16,7 @@ namespace UnityEngine
         public MaterialPropertyBlock matProps { get; set; }
         public Rendering.ShadowCastingMode shadowCastingMode { get; set; }
         public bool receiveShadows { get; set; }
+        public bool overrideSceneCullingMask { get; set; }
+        public ulong sceneCullingMask { get; set; }
     }
 }
