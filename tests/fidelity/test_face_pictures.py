@@ -11,7 +11,7 @@ from face_files import grinning
 from mua.avatar.decode import express, pose_splats
 from mua.baking.check import fidelity_of
 from mua.characters.read import read_character
-from mua.fidelity import faces, report, source_faces, source_process
+from mua.fidelity import faces, report, source_faces
 from mua.fidelity.canvas import Area, opened
 from mua.fidelity.compare import face_of
 from mua.fidelity.face_sheet import face_sheet
@@ -69,7 +69,7 @@ def test_expressions_look_like_the_files_own_targets(tmp_path: Path) -> None:
     assert fidelity is not None
     assert fidelity.face is not None
     assert [shot.name for shot in fidelity.face.expressions] == ["lean", "lift"]
-    for shot in fidelity.face.pictured:
+    for shot in fidelity.face.expressions:
         assert shot.agreement.iou > fidelity.face.rest.agreement.iou - 0.02
         assert not np.array_equal(shot.source, fidelity.face.rest.source)
     assert not any("The face" in sentence for sentence in warnings)
@@ -92,25 +92,18 @@ def test_a_wrong_expression_is_measured_and_named(tmp_path: Path) -> None:
     assert any("The face" in sentence and "lean" in sentence and "lift" not in sentence for sentence in warnings)
 
 
-def test_of_many_expressions_those_least_like_the_file_are_drawn(
+def test_of_many_expressions_those_least_like_the_file_are_in_the_picture(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     character = grinning_character(tmp_path)
     assert character.expressions is not None
     wrong = replace(character.expressions, offsets=character.expressions.offsets * np.array([1, -1, 1], np.float32))
     character = replace(character, expressions=wrong)
-    teacher = StillTeacher(character, texels=TEXELS)
-    for module in (faces, source_process):
-        monkeypatch.setattr(module, "PICTURED", 1)
-    few, every = drawn_here(character, teacher), drawn_here(character, teacher, SourceProcess(every=True))
-    assert [shot.name for shot in every.pictured] == [shot.name for shot in few.expressions] == ["lean", "lift"]
-    assert [shot.name for shot in few.pictured] == ["lift"]
-    assert few.expressions[1].agreement == every.expressions[1].agreement
-    assert few.rest.agreement == every.rest.agreement
-    lean, expected = few.expressions[0].agreement, every.expressions[0].agreement
-    assert lean.iou == pytest.approx(expected.iou, abs=0.005)
-    assert lean.psnr == pytest.approx(expected.psnr, abs=0.2)
-    assert face_sheet(few).height == face_sheet(every).height / 2
+    drawn = drawn_here(character, StillTeacher(character, texels=TEXELS))
+    assert drawn.least_like == drawn.expressions
+    monkeypatch.setattr(faces, "PICTURED", 1)
+    assert [shot.name for shot in drawn.least_like] == ["lift"]
+    assert face_sheet(drawn).height == face_sheet(drawn, every=True).height / 2
 
 
 def test_an_expression_drawn_where_it_moves_is_the_picture_drawn_whole(
@@ -119,11 +112,11 @@ def test_an_expression_drawn_where_it_moves_is_the_picture_drawn_whole(
     character = grinning_character(tmp_path)
     teacher = StillTeacher(character, texels=TEXELS)
     parts = drawn_here(character, teacher)
-    areas = [patch.area for shot in parts.pictured for patch in shot.other]
+    areas = [patch.area for shot in parts.expressions for patch in shot.other]
     assert all(not area.empty and area != whole_screen() for area in areas)
     monkeypatch.setattr(Area, "about", classmethod(lambda *_: whole_screen()))
     whole = drawn_here(character, teacher)
-    for part, all_of_it in zip(parts.pictured, whole.pictured, strict=True):
+    for part, all_of_it in zip(parts.expressions, whole.expressions, strict=True):
         np.testing.assert_array_equal(part.source, all_of_it.source)
         np.testing.assert_array_equal(part.splats, all_of_it.splats)
 
@@ -138,8 +131,8 @@ def test_what_a_process_leaves_is_drawn_here(tmp_path: Path) -> None:
             return iter([Patch(whole_screen(), whole.rest.splats), Patch(Area(0, 0, 0, 0), np.empty((0, 0, 4)))])
 
     parts = drawn_here(character, teacher, Stopping())
-    np.testing.assert_array_equal(parts.pictured[0].splats, whole.rest.splats)
-    np.testing.assert_array_equal(parts.pictured[1].splats, whole.pictured[1].splats)
+    np.testing.assert_array_equal(parts.expressions[0].splats, whole.rest.splats)
+    np.testing.assert_array_equal(parts.expressions[1].splats, whole.expressions[1].splats)
 
 
 def test_splats_that_an_expression_moves_lie_among_the_others_as_if_all_were_drawn_anew(tmp_path: Path) -> None:
@@ -147,7 +140,7 @@ def test_splats_that_an_expression_moves_lie_among_the_others_as_if_all_were_dra
     teacher = StillTeacher(character, texels=TEXELS)
     still, drawn = still_face(character, teacher), drawn_here(character, teacher)
     with opened() as context:
-        for shot, weights in zip(drawn.pictured, np.eye(2, dtype=np.float32), strict=True):
+        for shot, weights in zip(drawn.expressions, np.eye(2, dtype=np.float32), strict=True):
             mesh, texture = express(still.rig, still.mesh, texture=still.texture, weights=weights)
             posed = pose_splats(still.rig, mesh, texture=texture, pose=still.pose)
             expected = SplatPainter(context, source_faces.SCREEN)(posed, still.camera)

@@ -19,6 +19,7 @@ from mua.avatar.rendering import frame_bounds, render_premultiplied
 from mua.baking.check import WITHOUT_FILE, fidelity_of
 from mua.characters.read import read_character
 from mua.fidelity import report
+from mua.fidelity import splats as splat_painting
 from mua.fidelity.canvas import opened
 from mua.fidelity.compare import SCREEN, Fidelity, PoseFidelity, Shot, spread
 from mua.fidelity.measure import MOST_DECIBELS, Agreement, agreement, worst_place
@@ -145,10 +146,11 @@ def test_a_pixel_is_covered_by_the_share_of_its_samples(context: moderngl.Contex
     np.testing.assert_allclose(image[3:6, 3:6, 3], np.outer([1, 2 / 3, 0], [0, 2 / 3, 1]), atol=EIGHT_BITS)
 
 
-def test_splats_are_drawn_as_by_the_reference(context: moderngl.Context) -> None:
+def test_splats_are_drawn_as_by_the_reference(context: moderngl.Context, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(splat_painting, "SAMPLES", 1)
     frame = sphere(400)
     camera = orbit(frame_bounds(frame), screen=(61, 47), azimuth=0.3)
-    image = SplatPainter(context, camera.screen, samples=1)(frame, camera)
+    image = SplatPainter(context, camera.screen)(frame, camera)
     apart = np.abs(image - render_premultiplied(frame, camera))
     # Some 30 splats over each other, each with a few roundings of float32 in an exponent of up to 6.
     assert np.quantile(apart, 0.99) < 30 * 24 * 2**-24

@@ -31,8 +31,7 @@ def surfaces(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Surfaces:
     return read_surfaces(grinning(tmp_path))
 
 
-def test_the_process_draws_what_this_one_would(surfaces: Surfaces, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(source_process, "PICTURED", 1)  # so that both are first drawn with few samples
+def test_the_process_draws_what_this_one_would(surfaces: Surfaces) -> None:
     source, expressions = surfaces.source, surfaces.expressions
     assert source is not None
     assert expressions is not None
@@ -45,15 +44,10 @@ def test_the_process_draws_what_this_one_would(surfaces: Surfaces, monkeypatch: 
         face = face_of(StillTeacher(character, texels=96), source.scene, rest)
         assert face is not None
         process.draw_faces_of(face)
-        poses, again = list(process.poses()), process.draw_again(expressions.names[1:])
-        answers = list(process.faces()), list(process.splat_faces()), list(again)
+        answers, poses = (list(process.faces()), list(process.splat_faces())), list(process.poses())
     with opened() as context:
         np.testing.assert_array_equal(poses, list(source_poses(context, source.scene, sittings)))
-        here = (
-            list(source_faces(context, source.scene, rest, expressions.names, coarse=True)),
-            list(splat_faces(context, face, expressions.names, coarse=True)),
-            list(source_faces(context, source.scene, rest, expressions.names[1:])),
-        )
+        here = list(source_faces(context, source.scene, rest, expressions.names)), list(splat_faces(context, face))
     for drawn, expected in zip(answers, here, strict=True):
         assert [patch.area for patch in drawn] == [patch.area for patch in expected]
         for patch, other in zip(drawn, expected, strict=True):
@@ -62,7 +56,7 @@ def test_the_process_draws_what_this_one_would(surfaces: Surfaces, monkeypatch: 
 
 
 def test_nothing_that_the_process_draws_is_drawn_here(surfaces: Surfaces, monkeypatch: pytest.MonkeyPatch) -> None:
-    def nothing(*_: object, **__: object) -> Iterator[Any]:
+    def nothing(*_: object) -> Iterator[Any]:
         raise AssertionError
         yield
 

@@ -59,9 +59,9 @@ def check(settings: BakeSettings, listener: Listener, *, every_face: bool = Fals
     """
     require_writable(settings.output)
     listener.stage("character")
-    with threadpool_limits(1, user_api="blas"), SourceProcess(every=every_face) as process:  # as in a bake
+    with threadpool_limits(1, user_api="blas"), SourceProcess() as process:  # as in a bake
         character = load_baked_character(settings, read=process.begin)
-        return _check(settings, character, listener, process=process)
+        return _check(settings, character, listener, process=process, every_face=every_face)
 
 
 def _check(
@@ -70,6 +70,7 @@ def _check(
     listener: Listener,
     *,
     process: SourceProcess,
+    every_face: bool,
 ) -> Check:
     listener.stage("motion")
     loaded = _loaded(settings, character)
@@ -87,7 +88,7 @@ def _check(
         write_sheet(written[0], fidelity_sheet(fidelity))
         if fidelity.face is not None:
             written.append(settings.beside("_check_face.png"))
-            write_sheet(written[-1], face_sheet(fidelity.face))
+            write_sheet(written[-1], face_sheet(fidelity.face, every=every_face))
     if character.expressions is not None:
         written.append(settings.beside("_expressions.json"))
         write_expression_names(written[-1], character.expression_names)

@@ -35,7 +35,7 @@ def main(
         bool, typer.Option("--check", help="Train nothing; in seconds, compare splats and motion with their sources.")
     ] = False,
     verbose: Annotated[
-        bool, typer.Option("--verbose", help="Print lists in full, and with --check draw every expression.")
+        bool, typer.Option("--verbose", help="Print lists in full; with --check, picture every expression.")
     ] = False,
     json: Annotated[Path | None, typer.Option(help="With --check: JSON file to write all figures to.")] = None,
     **options: Any,

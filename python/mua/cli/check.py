@@ -111,7 +111,7 @@ def _face(face: FaceFidelity) -> str:
     """How many expressions there are, and how like the source the face is in them."""
     rest = face.rest.agreement.psnr
     decibels = sorted(shot.agreement.psnr for shot in face.expressions)
-    few = len(face.pictured)
+    few = len(face.least_like)
     shown = f" The picture has the {few} least like it (--verbose: all)." if few < len(decibels) else ""
     return (
         f"Face: {len(decibels)} expressions at weight 1 compared with the source: least {decibels[0]:.1f} dB "

@@ -13,10 +13,11 @@ from mua.fidelity.strips import caption, difference, sheet
 COLUMNS = 2  # expressions beside each other
 
 
-def face_sheet(face: FaceFidelity) -> Image.Image:
-    """Three cells for the face at rest and for every expression that is drawn, in the order of the file."""
+def face_sheet(face: FaceFidelity, *, every: bool = False) -> Image.Image:
+    """Three cells for the face at rest and for every expression, or of many for those least like the source."""
     background = background_for([face.rest.source])
-    return sheet([_strip(shot, background) for shot in (face.rest, *face.pictured)], COLUMNS)
+    shots = face.expressions if every else face.least_like
+    return sheet([_strip(shot, background) for shot in (face.rest, *shots)], COLUMNS)
 
 
 def _strip(shot: ExpressionShot, background: float) -> Array:

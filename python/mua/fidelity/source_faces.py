@@ -13,7 +13,7 @@ import numpy as np
 from mua.arrays import Array
 from mua.avatar.camera import Camera, orbit
 from mua.fidelity.canvas import Area
-from mua.fidelity.painter import SAMPLES, Painter
+from mua.fidelity.painter import Painter
 from mua.fidelity.posed_source import Moment, expressed, skinned
 from mua.scene import Part, Scene
 
@@ -36,16 +36,9 @@ class Patch(NamedTuple):
         return whole
 
 
-def source_faces(
-    context: moderngl.Context,
-    scene: Scene,
-    rest: Moment,
-    names: Sequence[str],
-    *,
-    coarse: bool = False,  # one sample in a pixel
-) -> Iterator[Patch]:
+def source_faces(context: moderngl.Context, scene: Scene, rest: Moment, names: Sequence[str]) -> Iterator[Patch]:
     """The image of the file's own meshes at rest, and what is other in that of each expression alone."""
-    of_source = _Source(context, scene, rest, camera_of(scene, rest), samples=1 if coarse else SAMPLES)
+    of_source = _Source(context, scene, rest, camera_of(scene, rest))
     yield Patch(Area(0, 0, *SCREEN), of_source.at_rest)
     yield from map(of_source.expressed, names)
 
@@ -53,9 +46,9 @@ def source_faces(
 class _Source:
     """Draws the file's own meshes; for an expression only where it moves them."""
 
-    def __init__(self, context: moderngl.Context, scene: Scene, rest: Moment, camera: Camera, *, samples: int) -> None:
+    def __init__(self, context: moderngl.Context, scene: Scene, rest: Moment, camera: Camera) -> None:
         self._scene, self._rest, self._camera = scene, rest, camera
-        self._paint = Painter(context, scene.parts, scene.materials, screen=SCREEN, samples=samples)
+        self._paint = Painter(context, scene.parts, scene.materials, screen=SCREEN)
         self._places = [skinned(scene, part, rest.nodes) for part in scene.parts]
         shown = [_shown(part, at, camera) for part, at in zip(scene.parts, self._places, strict=True)]
         self._paint.near_first(self._places, camera, shown)

@@ -1,8 +1,7 @@
 """Draws a character's file in a process beside this one, while its splats are made, and then the faces of the splats.
 
 The process is this module as a program: it reads a source, a skeleton and the names of expressions from standard input
-and writes images to standard output, then poses and writes theirs, then a still face, then names of expressions that
-are drawn once more with all samples. It is a process because OpenGL
+and writes images to standard output, then poses and writes theirs, then a still face. It is a process because OpenGL
 holds Python's lock while it draws.
 """
 
@@ -27,7 +26,6 @@ from mua.fidelity.source_poses import Sitting, source_poses
 from mua.fidelity.splat_faces import StillFace, splat_faces
 
 FEW = 16  # expressions: fewer, of fewer triangles than these, are drawn sooner than a process starts
-PICTURED = 15  # expressions that are drawn with all samples, unless all are asked for
 SMALL = 10_000
 T = TypeVar("T")
 
@@ -35,9 +33,7 @@ T = TypeVar("T")
 class SourceProcess:
     """The process, where there is one; it ends with the block."""
 
-    def __init__(self, *, every: bool = False) -> None:
-        """With `every`, each expression is drawn with all samples."""
-        self._every = every
+    def __init__(self) -> None:
         self._process: subprocess.Popen[bytes] | None = None
         self._thread = ThreadPoolExecutor(1)  # one question after the other
         self._faces: Iterator[Patch] = iter(())
@@ -58,12 +54,7 @@ class SourceProcess:
             self._process = subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=subprocess.DEVNULL)
         except OSError:  # no room for it: all is then drawn here
             return
-        job = source, surfaces.skeleton, names, self.coarse(names)
-        self._faces = self._answers(job, 1 + len(names) if names else 0)
-
-    def coarse(self, names: Sequence[str]) -> bool:
-        """Whether expressions are so many that they are first drawn with one sample in a pixel."""
-        return not self._every and len(names) > PICTURED
+        self._faces = self._answers((source, surfaces.skeleton, names), 1 + len(names) if names else 0)
 
     def draw_poses(self, sittings: Sequence[Sitting]) -> None:
         """Draw the source in some poses as well, where there is a process."""
@@ -74,10 +65,6 @@ class SourceProcess:
         """Draw the faces of the splats as well, where there is a process; after poses."""
         if self._process is not None:
             self._splat_faces = self._answers(face, 1 + len(face.expressions))
-
-    def draw_again(self, names: Sequence[str]) -> Iterator[Patch]:
-        """Of the source also some faces with all samples; after the faces of the splats."""
-        return iter(()) if self._process is None else self._answers(names, 1 + len(names))
 
     def faces(self) -> Iterator[Patch]:
         """As of `source_faces`, as soon as they are drawn; none or not all where no process draws them."""
@@ -148,16 +135,14 @@ def _answer(images: Iterable[object], answers: IO[bytes]) -> None:
 def main() -> None:
     """Draw what standard input asks for; nothing where this machine has no OpenGL."""
     questions = sys.stdin.buffer
-    source, skeleton, names, coarse = pickle.load(questions)
+    source, skeleton, names = pickle.load(questions)
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # output of drivers must not come between the images
     with suppress(InputError, EOFError), opened() as context, answers:
-        rest = Poser(source, skeleton).rest()
         if names:
-            _answer(source_faces(context, source.scene, rest, names, coarse=coarse), answers)
+            _answer(source_faces(context, source.scene, Poser(source, skeleton).rest(), names), answers)
         _answer(source_poses(context, source.scene, pickle.load(questions)), answers)
-        _answer(splat_faces(context, pickle.load(questions), names, coarse=coarse), answers)
-        _answer(source_faces(context, source.scene, rest, pickle.load(questions)), answers)
+        _answer(splat_faces(context, pickle.load(questions)), answers)
 
 
 if __name__ == "__main__":

@@ -3,7 +3,7 @@
 It loads little, because a process of its own draws these images.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import moderngl
@@ -14,7 +14,7 @@ from mua.avatar.camera import Camera
 from mua.avatar.decode import express, pose_splats
 from mua.fidelity.canvas import Area
 from mua.fidelity.source_faces import SCREEN, Patch
-from mua.fidelity.splats import BEYOND, SAMPLES, SplatPainter
+from mua.fidelity.splats import BEYOND, SplatPainter
 from mua.kernels.expressions import reach_of
 from mua.pose.skeleton import Pose
 from mua.rig.expressions import Expressions
@@ -33,25 +33,19 @@ class StillFace:
     expressions: Expressions
 
 
-def splat_faces(
-    context: moderngl.Context,
-    face: StillFace,
-    names: Sequence[str],
-    *,
-    coarse: bool = False,  # one sample in a pixel
-) -> Iterator[Patch]:
-    """The image of the splats at rest, and what is other in that of each of some expressions alone."""
-    of_splats = _Splats(context, face, samples=1 if coarse else SAMPLES)
+def splat_faces(context: moderngl.Context, face: StillFace) -> Iterator[Patch]:
+    """The image of the splats at rest, and what is other in that of each expression alone."""
+    of_splats = _Splats(context, face)
     yield Patch(Area(0, 0, *SCREEN), of_splats.at_rest)
-    yield from map(of_splats.expressed, map(face.expressions.names.index, names))
+    yield from map(of_splats.expressed, range(len(face.expressions)))
 
 
 class _Splats:
     """Draws the splats of the pose at rest, bent as an avatar bends them; only those that an expression moves anew."""
 
-    def __init__(self, context: moderngl.Context, face: StillFace, *, samples: int) -> None:
+    def __init__(self, context: moderngl.Context, face: StillFace) -> None:
         self._face = face
-        self._paint = SplatPainter(context, SCREEN, samples=samples)
+        self._paint = SplatPainter(context, SCREEN)
         self._posed = pose_splats(face.rig, face.mesh, texture=face.texture, pose=face.pose)
         self._quads = self._paint.quads(self._posed, face.camera)
         self._layers = self._paint.layers(self._quads)

@@ -97,11 +97,10 @@ NOTHING = Layer(0, None)
 class SplatPainter:
     """Draws posed splats onto one size of image."""
 
-    def __init__(self, context: moderngl.Context, screen: tuple[int, int], *, samples: int = SAMPLES) -> None:
-        """`samples` are along a side of a pixel."""
-        self._context, self._screen, self._samples = context, screen, samples
+    def __init__(self, context: moderngl.Context, screen: tuple[int, int]) -> None:
+        self._context, self._screen = context, screen
         self._program = context.program(vertex_shader=VERTEX, fragment_shader=FRAGMENT)
-        self._canvas = Canvas(context, screen, samples=samples, dtype="f4")
+        self._canvas = Canvas(context, screen, samples=SAMPLES, dtype="f4")
         set_uniform(self._program, "screen", self._canvas.size)
 
     def __call__(self, frame: Splats, camera: Camera) -> Array:
@@ -142,5 +141,5 @@ class SplatPainter:
     def area(self, *quads: Quads) -> Area:
         """The part of the image that quads cover."""
         rows = np.concatenate([some.rows for some in quads])
-        middle, half = rows[:, :2] / self._samples, half_extents(rows[:, :6]) / self._samples
+        middle, half = rows[:, :2] / SAMPLES, half_extents(rows[:, :6]) / SAMPLES
         return Area.about(middle - half, middle + half, self._screen)

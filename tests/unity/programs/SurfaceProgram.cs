@@ -23,6 +23,7 @@ namespace Mua
         private static readonly AvatarEyes Eyes = new AvatarEyes();
         private static readonly CommandBuffer Commands = new CommandBuffer();
         private static readonly List<AvatarDraw> Draws = new List<AvatarDraw>();
+        private static readonly GameObject Owner = new GameObject("shown");
 
         public static int Main(string[] arguments)
         {
@@ -76,7 +77,7 @@ namespace Mua
             AvatarFrame frame = actors[actors.Count - 1].Frame;
             var surface = new AvatarSurface(resources, frame);
             int made = Recorder.Made;
-            surface.CastShadow(All, new Bounds(), new GameObject("shown")); // before there is a pose
+            surface.CastShadow(All, new Bounds(), Owner); // before there is a pose
             Collect(surface, AvatarViews.Splats);
             Say("idle", Recorder.Made - made, Recorder.Renders, Draws.Count);
             Follow(arguments[3], actors[actors.Count - 1]);
@@ -131,7 +132,7 @@ namespace Mua
         /// <summary>Draws all, in the order of a frame: first what the lights see.</summary>
         private static void Run(AvatarSurface surface)
         {
-            surface.CastShadow(All, new Bounds(), new GameObject("shown"));
+            surface.CastShadow(All, new Bounds(), Owner);
             Collect(surface, All);
             for (int i = 0; i < Draws.Count; i++)
             {
