@@ -89,7 +89,7 @@ def test_shape_follows_the_range_of_motion_roughly_where_that_is_all_there_is(mi
     """It swings more than any motion of the user's; light follows from the pose."""
     assert missed["none"]["geometry"] > 1.5 * missed["alike"]["geometry"]
     assert missed["none"]["mesh"] > 3 * missed["alike"]["mesh"]
-    assert missed["none"]["appearance"] < 0.5 * missed["none"]["geometry"]
+    assert missed["none"]["appearance"] < 1.2 * missed["alike"]["appearance"]
 
 
 def test_means_are_of_all_frames_by_their_weight_and_the_static_texture_completes_the_users(tmp_path: Path) -> None:

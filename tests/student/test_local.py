@@ -78,8 +78,6 @@ def test_every_entry_of_the_descriptor_fades_with_its_joint_and_the_root_by_one_
         assert parts.reach(0.5)[part].tolist() == [0.0] * turned + of_frames
         light = [*joints, *(POSE_FOR_LIGHT * share for share in of_frames)]
         assert parts.reach(0.5, light=True)[part].tolist() == pytest.approx(light)
-        still = [0.0] * (turned + 9) + joints + [0.0] * ((encoding.window - 1) * len(of_frames) // encoding.window)
-        assert parts.reach(0.5, newest=True)[part].tolist() == still
 
 
 def test_what_a_joint_is_translated_fades_as_its_rotation_does() -> None:
@@ -112,7 +110,6 @@ def two_parts() -> Parts:
     return Parts(
         torch.tensor([[0, 1], [1, 0]]),
         torch.zeros(2, dtype=torch.bool),
-        torch.ones(2, dtype=torch.bool),
         coarse,
         fine,
         torch.tensor([0, 0, 0, 1, 1, 1, 1]),

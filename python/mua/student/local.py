@@ -17,7 +17,6 @@ from mua.channels import COARSE_TEXELS, FINE_TEXELS
 from mua.pose.encoding import PoseEncoding
 from mua.pose.joint_steps import joint_steps, nearest_encoded
 from mua.rig.rig import Rig
-from mua.student.components import Components
 from mua.student.model import Branch
 from mua.student.targets import Targets
 
@@ -31,21 +30,17 @@ class Parts:
 
     steps: Tensor  # [P, D] int64
     world: Tensor  # [D] bool, the entries of how joints are turned in the world
-    newest: Tensor  # [D] bool, those of joints in their parents in the newest pose
     coarse: Tensor  # [n, n] int64, the part of each sample of LL and D3
     fine: Tensor  # [2n, 2n] int64, of D2
     vertices: Tensor  # [V] int64
     above: Tensor  # [P] int64, the part of the joint above, which comes before it; the first has none
 
-    def reach(self, fade: float, *, light: bool = False, newest: bool = False) -> Tensor:
+    def reach(self, fade: float, *, light: bool = False) -> Tensor:
         """Factors [P, D] of the descriptor's entries as each part sees them; 1 for its own joint.
 
-        Parts that follow the `light` also see how joints are turned in the world; shape follows them in their parents,
-        that of splats in the `newest` pose alone.
+        Parts that follow the `light` also see how joints are turned in the world; shape follows them in their parents.
         """
         sees = torch.where(self.world, float(light), POSE_FOR_LIGHT if light else 1.0)
-        if newest:
-            sees = sees * self.newest
         return fade ** self.steps.float() * sees
 
     def texel_owners(
@@ -65,10 +60,6 @@ class Locality:
     above: Tensor  # [P] int64, of the parts
     reach: Tensor  # [P, D]
     shares: Tensor  # [P, K, K]; coordinates @ shares[p] are the coordinates of part p's samples alone
-
-    def reads(self, components: Components) -> Tensor:
-        """Which components [K], bool, some part looks at: shape does not see how joints are turned in the world."""
-        return (components.directions[:, self.reach.any(0)] != 0).any(1)
 
     def fewer(
         self,
@@ -98,15 +89,12 @@ def body_parts(rig: Rig, encoding: PoseEncoding) -> Parts:
     image: Array = np.zeros((texels.size**2, len(seen)))
     image[texels.texels] = np.einsum("nvp,nv->np", corners, texels.barycentrics)
     image = image.reshape(texels.size, texels.size, -1)
-    listed = [part for part in encoding.parts for _ in range(part.width)]  # of each entry
-    columns = [0 if part.joint is None else seen.index(part.joint) for part in listed]
-    world = torch.tensor([part.world for part in listed])
-    local = torch.tensor([part.joint is not None and not part.world for part in listed])
-    first = int(world.sum()) + (len(listed) - int(world.sum())) // encoding.window  # where the newest pose ends
+    columns = [
+        0 if part.joint is None else seen.index(part.joint) for part in encoding.parts for _ in range(part.width)
+    ]
     return Parts(
         steps=torch.from_numpy(steps[:, columns]),
-        world=world,
-        newest=local & (torch.arange(len(listed)) < first),
+        world=torch.tensor([part.world for part in encoding.parts for _ in range(part.width)]),
         coarse=torch.from_numpy(sample_owners(image, COARSE_TEXELS)),
         fine=torch.from_numpy(sample_owners(image, FINE_TEXELS)),
         vertices=torch.from_numpy(weights.argmax(1)),
@@ -158,7 +146,7 @@ def texture_locality(
             shapes = torch.einsum("kr,sri,srj->skij", alpha[:, channel], h, w)
             for band in shapes.flatten(2):
                 _add_shares(shares, band * weights[channel], owner)
-    return _locality(parts, shares, parts.reach(fade, light=light, newest=not light))
+    return _locality(parts, shares, fade=fade, light=light)
 
 
 def sample_locality(
@@ -173,10 +161,11 @@ def sample_locality(
     shares = torch.zeros(len(parts.steps), len(basis), len(basis), device=basis.device)
     for value in range(basis.shape[2]):
         _add_shares(shares, basis[..., value], owners.to(basis.device))
-    return _locality(parts, shares, parts.reach(fade, light=light))
+    return _locality(parts, shares, fade=fade, light=light)
 
 
-def _locality(parts: Parts, shares: Tensor, reach: Tensor) -> Locality:
+def _locality(parts: Parts, shares: Tensor, *, fade: float, light: bool) -> Locality:
+    reach = parts.reach(fade, light=light)
     return Locality(*(own.to(shares.device) for own in (parts.steps, parts.above, reach, shares)))
 
 

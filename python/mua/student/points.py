@@ -16,7 +16,6 @@ FARTHEST = 16.0  # factor of a point's own distance from the mean
 BLEND = 0.5  # points lie up to this far on the way to a frame
 CLOSE = 0.05  # noise of points close to frames, in spreads of each direction
 AT_ONCE = 1 << 12  # points: several copies of theirs are in memory while they are drawn
-EXCHANGES = 4  # most places of a point that are as in other frames; each number of them is as likely
 RADII = 4  # a random joint is exchanged with those within a random radius of fewer than this many joints
 
 
@@ -88,19 +87,12 @@ def exchange(
     *,
     generator: torch.Generator,
 ) -> Tensor:
-    """Descriptors [count, D] of frames in which a random joint, and those near it, are as in another frame.
-
-    From one to EXCHANGES places are, each as in a frame of its own.
-    """
+    """Descriptors [count, D] of frames in which a random joint, and those near it, are as in another frame."""
+    part = torch.randint(len(steps), (count,), generator=generator).to(inputs.device)
+    radius = torch.randint(RADII, (count, 1), generator=generator).to(inputs.device)
+    one, other = (pick(inputs, count, generator=generator) for _ in range(2))
     few = steps.to(inputs.device, torch.int16)  # a small type, because [count, D] of them is large
-    mixed = pick(inputs, count, generator=generator)
-    for left in range(EXCHANGES, 0, -1):
-        places = count * left // EXCHANGES
-        part = torch.randint(len(steps), (places,), generator=generator).to(inputs.device)
-        radius = torch.randint(RADII, (places, 1), generator=generator).to(inputs.device)
-        other = pick(inputs, places, generator=generator)
-        mixed[:places] = torch.where(few[part] <= radius, other, mixed[:places])
-    return mixed
+    return torch.where(few[part] <= radius, one, other)
 
 
 def scatter(

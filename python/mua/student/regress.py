@@ -24,7 +24,6 @@ from mua.training.schedule import Schedule
 # Chosen on held-out walks and turns.
 FIRST_LAYER = 0.3  # scale of the first layer's weights at the start: small ones make smooth functions
 POINTS_AT_ONCE = 1 << 9
-FEWEST_VISITS, ENOUGH = 8, 24_000  # uses of each point where frames are few, and up to how many points
 UNSHARED = 1e-3  # share of a direction that a part leaves to the others
 UNSEEN = 1e-5  # share of the spread in the columns of the descriptor that a part does not look at
 FORGONE = 1e-3  # share of the spread of a part's view of the descriptors
@@ -38,7 +37,7 @@ class Fit(NamedTuple):
     fades: bool  # whether the function fades to the mean of these frames; else to that of the user's
     own: float = RIDGE  # noise variance of what the user's frames show besides
     final: bool = False  # whether nothing fits the MLP to the frames afterwards
-    visits: int = 64  # uses of each point where frames are many; the function's values there are computed once
+    visits: int = 64  # uses of each point; the function's values there are computed once
 
 
 POSED, SWUNG = Fit(0.1, fades=True), Fit(10.0, fades=False)  # light and cloth at rest; cloth that the range swings
@@ -76,10 +75,7 @@ def regress(
     unit = unit.clamp(min=torch.finfo(targets.dtype).tiny)
     goal = targets / unit
     mlp = seeded_mlp(z.shape[1], hidden, goal.shape[1], run=run)
-    read = torch.ones_like(z[0], dtype=torch.bool) if locality is None else locality.reads(components)
-    leave_unread(mlp, ~read)
-    uses = schedule.steps * schedule.batch
-    count = max(uses // fit.visits, min(uses // FEWEST_VISITS, ENOUGH), 1)
+    count = max(schedule.steps * schedule.batch // fit.visits, 1)
     close = count // 3 if fit.final else 0
     error = absolute_error if fit.final else squared_error
 
@@ -98,7 +94,6 @@ def regress(
         if close:
             frames = z if own is None or not own.any() else z[own]
             points = torch.cat([points, draw_close(frames, close, generator=generator).half()])
-        points *= read
         release_memory()
         parts = {part: points[part.start :: part.step] for part in run.processes.parts(count)}
         return {part: (at, _values(smooth, at, width=goal.shape[1])) for part, at in parts.items()}
@@ -225,19 +220,6 @@ def seeded_mlp(inputs: int, hidden: int, outputs: int, *, run: Run) -> nn.Sequen
             layer.bias.zero_()
         hidden_layers[0].weight.mul_(FIRST_LAYER)
     return mlp.to(run.device)
-
-
-@torch.no_grad()
-def leave_unread(mlp: nn.Module, unread: Tensor) -> None:
-    """Zero the weights of inputs [K] that the function does not read; where these are zero, it stays so in training."""
-    linear_layers(mlp)[0].weight[:, unread] = 0
-
-
-@torch.no_grad()
-def read_by(mlp: nn.Module) -> Tensor:
-    """Which inputs [K], bool, an MLP reads."""
-    read: Tensor = linear_layers(mlp)[0].weight.any(0)
-    return read
 
 
 def squared_error(predicted: Tensor, goal: Tensor) -> Tensor:

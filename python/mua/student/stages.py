@@ -20,7 +20,7 @@ from mua.student.local import Parts, texture_locality
 from mua.student.model import Branch, Student, lowpass_texels
 from mua.student.negligible import drop_negligible, freeze_channels
 from mua.student.paper_recipe import fit_branch_from_noise, fit_coarse_from_noise
-from mua.student.regress import POSED, SWUNG, read_by, regress
+from mua.student.regress import POSED, SWUNG, regress
 from mua.student.sensitivity import STAGE as SENSITIVITIES
 from mua.student.settings import Settings, StageName
 from mua.student.subband_source import Source, hold
@@ -262,7 +262,7 @@ def fit_branch(
     stage = f"{name} fine-tuning"
     finetune(
         branch,
-        components.hold(components(inputs)) * read_by(branch.mlp),
+        components.hold(components(inputs)),
         lambda rows: source(slice(0, branch.channels), rows),
         weights=weights,
         schedule=settings.finetune,
