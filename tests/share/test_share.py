@@ -1,40 +1,27 @@
-"""A shared folder, a single file and the server: content, errors, and that no other file can be reached."""
+"""A shared folder and a single file: content and errors."""
 
 import base64
 import hashlib
-import http.client
 import json
 import re
-import signal
-import socket
-import subprocess
-import sys
-from collections.abc import Iterator
 from dataclasses import replace
-from html.parser import HTMLParser
 from pathlib import Path
-from threading import Thread
-from typing import Any, BinaryIO
 
 import numpy as np
 import pytest
 from commands import Commands
+from page_tags import Tags
 from PIL import Image
 from synthetic_avatar import synthetic_avatar
 
 from mua.asset import write
 from mua.avatar.camera import FILL
-from mua.cli.view_options import Asked
-from mua.cli.view_web import attributes
 from mua.rig.bounds import root_positions
 from mua.rotation import multiply
-from mua.share import folder, server, single, site
+from mua.share import folder, single, site
 from mua.share.poster import front, opening, view
-from mua.share.server import serving
 from mua.share.single import in_order
 
-BYTES = bytes(range(256)) * 4
-AUTHORITY = "127.0.0.1"
 ON_DEMAND = (  # modules that no page needs before it shows an avatar
     *(
         "names/",
@@ -49,22 +36,6 @@ ON_DEMAND = (  # modules that no page needs before it shows an avatar
     ),
     *("anatomy.js", "surface_mesh.js", "wgsl/skeleton.js", "wgsl/surface.js"),
 )
-
-
-class Tags(HTMLParser):
-    """The start tags of a page, with their attributes."""
-
-    def __init__(self, page: str) -> None:
-        super().__init__()
-        self.found: list[tuple[str, dict[str, str | None]]] = []
-        self.feed(page)
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        self.found.append((tag, dict(attrs)))
-
-    def one(self, name: str) -> dict[str, str | None]:
-        (attributes,) = [attributes for tag, attributes in self.found if tag == name]
-        return attributes
 
 
 def share(command: Commands, *arguments: object) -> str:
@@ -254,152 +225,3 @@ def test_avatars_too_large_for_a_single_file_are_refused(
 def test_a_single_file_is_an_html_file(command: Commands, avatar_file: Path, tmp_path: Path) -> None:
     sentence = command("share", avatar_file, "--single-file", "-o", tmp_path / "one").sentence
     assert sentence == f"error: -o is {tmp_path / 'one'}; expected a name that ends in .html with --single-file"
-
-
-@pytest.fixture
-def port(tmp_path: Path) -> Iterator[int]:
-    """That of a server of a small site, beside a file that is not of it."""
-    (tmp_path / "hero.muaavatar").write_bytes(BYTES)
-    (tmp_path / "secret.txt").write_text("secret")
-    names = ("index.html", "a.js", "x.wgsl", "style.css", "poster.png", "icon.svg")
-    files: dict[str, site.Content] = dict.fromkeys(names, b"1")
-    with serving({**files, "my hero.muaavatar": tmp_path / "hero.muaavatar", "gone": tmp_path / "gone"}) as server:
-        thread = Thread(target=server.serve_forever, args=(0.02,))
-        thread.start()
-        assert server.server_address[0] == AUTHORITY  # no other machine reaches it
-        yield server.server_port
-        server.shutdown()
-        thread.join()
-
-
-def ask(port: int, path: str, method: str = "GET", **headers: str) -> tuple[int, dict[str, str], bytes]:
-    """Status, headers and body of an answer."""
-    connection = http.client.HTTPConnection(AUTHORITY, port)
-    connection.request(method, path, headers=headers)
-    answer = connection.getresponse()
-    found = answer.status, dict(answer.getheaders()), answer.read()
-    connection.close()
-    return found
-
-
-def test_a_body_does_not_wait_until_its_header_is_confirmed(port: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    undelayed = []
-
-    def copy(source: BinaryIO, target: Any, first: int, end: int) -> None:
-        undelayed.append(target._sock.getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY))
-        target.write(source.read(end))
-
-    monkeypatch.setattr(server, "_copy", copy)
-    assert ask(port, "/a.js")[2] == b"1"
-    assert undelayed == [1]
-
-
-@pytest.mark.parametrize(
-    ("path", "kind"),
-    [
-        ("/", "text/html; charset=utf-8"),
-        ("/index.html?x=1", "text/html; charset=utf-8"),
-        ("/a.js", "text/javascript; charset=utf-8"),
-        ("/x.wgsl", "text/wgsl; charset=utf-8"),
-        ("/style.css", "text/css; charset=utf-8"),
-        ("/poster.png", "image/png"),
-        ("/icon.svg", "image/svg+xml"),
-        ("/my%20hero.muaavatar", "application/octet-stream"),
-    ],
-)
-def test_the_server_names_the_kind_of_each_file(port: int, path: str, kind: str) -> None:
-    status, headers, body = ask(port, path)
-    assert (status, headers["Content-Type"], headers["X-Content-Type-Options"]) == (200, kind, "nosniff")
-    assert len(body) == int(headers["Content-Length"]) > 0
-
-
-@pytest.mark.parametrize(
-    "path", ["/secret.txt", "/../secret.txt", "/%2e%2e/secret.txt", "//etc/passwd", "/gone", "/a.js/", "/nothing"]
-)
-def test_nothing_but_the_site_is_served(port: int, path: str) -> None:
-    status, _, body = ask(port, path)
-    assert (status, body) == (404, b"Not Found\n")
-
-
-@pytest.mark.parametrize(
-    ("asked", "first", "end"),
-    [("bytes=0-9", 0, 10), ("bytes=1000-", 1000, 1024), ("bytes=-24", 1000, 1024), ("bytes=1020-9999", 1020, 1024)],
-)
-def test_a_part_of_a_file_can_be_asked_for(port: int, asked: str, first: int, end: int) -> None:
-    status, headers, body = ask(port, "/my%20hero.muaavatar", Range=asked)
-    assert (status, body) == (206, BYTES[first:end])
-    assert headers["Content-Range"] == f"bytes {first}-{end - 1}/1024"
-
-
-@pytest.mark.parametrize("asked", ["bytes=1024-", "bytes=9-8", "bytes=-0"])
-def test_a_part_that_is_not_there_is_refused(port: int, asked: str) -> None:
-    status, headers, _ = ask(port, "/my%20hero.muaavatar", Range=asked)
-    assert (status, headers["Content-Range"]) == (416, "bytes */1024")
-
-
-@pytest.mark.parametrize("asked", ["bytes=0-1,4-5", "lines=1-2", "bytes=-"])
-def test_what_is_no_single_range_is_answered_by_the_whole(port: int, asked: str) -> None:
-    assert ask(port, "/my%20hero.muaavatar", Range=asked)[::2] == (200, BYTES)
-
-
-def test_a_browser_keeps_nothing_for_the_next_run_at_the_same_address(port: int) -> None:
-    for path in ("/", "/my%20hero.muaavatar"):
-        assert ask(port, path)[1]["Cache-Control"] == "no-store"
-
-
-def test_a_head_has_no_body(port: int) -> None:
-    status, headers, body = ask(port, "/my%20hero.muaavatar", "HEAD")
-    assert (status, headers["Content-Length"], body) == (200, "1024", b"")
-    with socket.create_connection((AUTHORITY, port)) as plain, plain.makefile("rb") as answer:
-        plain.sendall(f"HEAD /nothing HTTP/1.1\r\nHost: {AUTHORITY}:{port}\r\nConnection: close\r\n\r\n".encode())
-        assert answer.read().endswith(b"\r\n\r\n")
-
-
-def test_another_name_for_this_address_is_refused(port: int) -> None:
-    assert ask(port, "/", Host=f"evil.example:{port}")[0] == 421
-    assert ask(port, "/", Host=f"localhost:{port}")[0] == 200
-
-
-def test_mua_view_serves_until_it_is_interrupted(avatar_file: Path) -> None:
-    heeds = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)"  # also in a job in the background
-    code = f"{heeds}; import sys; sys.argv[0] = 'mua-view'; from mua.cli.view import run; run()"
-    line = [sys.executable, "-u", "-c", code, str(avatar_file), "--web", "--no-open"]
-    line += ["--show", "splats,template", "--stereo", "--clip", "wave"]
-    line += ["--azimuth", "30", "--elevation", "10", "--orbit", "-5"]
-    with subprocess.Popen(line, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as ran:
-        try:
-            _assert_served(ran, avatar_file)
-        finally:
-            ran.kill()  # where it is not as it should be, it would serve for ever
-
-
-def _assert_served(ran: "subprocess.Popen[str]", avatar_file: Path) -> None:
-    assert ran.stdout is not None
-    assert ran.stderr is not None
-    printed = ran.stdout.readline()
-    found = re.fullmatch(r"a: http://127\.0\.0\.1:(\d+)/ \(Ctrl-C ends\)\n", printed)
-    assert found, (printed, ran.stderr.read() if ran.poll() is not None else "")
-    element = Tags(ask(int(found[1]), "/")[2].decode()).one("mua-avatar")
-    assert (element["src"], element["show"], element["stereo"]) == ("a.muaavatar", "splats,template", "")
-    assert (element["clip"], element["elevation"], element["orbit"]) == ("wave", "10", "-5")
-    assert float(element["azimuth"] or "nan") == pytest.approx(30 + front(*opening(avatar_file, "wave")), abs=0.06)
-    ran.send_signal(signal.SIGINT)
-    assert ran.wait(timeout=60) == 0
-    assert ran.stderr.read() == ""
-
-
-def test_the_page_looks_from_beside_the_figures_front() -> None:
-    assert attributes(Asked(azimuth=30.0, elevation=5.0), 90.0) == {"azimuth": "120.0", "elevation": "5"}
-
-
-@pytest.mark.parametrize("option", ["-o=a.png", "--ipd=0.06", "--motion=a.bvh", "--frame=3"])
-def test_what_a_browser_would_not_follow_is_refused(command: Commands, avatar_file: Path, option: str) -> None:
-    name, _, value = option.partition("=")
-    sentence = command("view", avatar_file, "--web", "--no-open", name, *([value] if value else [])).sentence
-    assert sentence == f"error: {name}: does not work with --web; the page has controls of its own"
-
-
-def test_no_open_alone_is_refused(command: Commands, avatar_file: Path) -> None:
-    assert command("view", avatar_file, "--no-open").sentence == (
-        "error: --no-open: works only with --web, which is not given"
-    )
