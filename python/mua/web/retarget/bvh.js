@@ -89,7 +89,8 @@ function readFrames(lines, width) {
   const count = header(rows[0], "Frames");
   const time = header(rows[1], "Frame Time");
   if (!(count >= 1 && Number.isInteger(count))) throw fault(`Frames: expected at least 1 frame, found ${count}.`);
-  if (!(time > 0 && time <= SLOWEST)) throw fault(`Frame Time: expected seconds above 0 and up to ${SLOWEST}, found ${time}.`);
+  if (!(time > 0 && time <= SLOWEST))
+    throw fault(`Frame Time: expected seconds above 0 and up to ${SLOWEST}, found ${time}.`);
   const words = rows.slice(2).join(" ").split(/\s+/).filter(Boolean);
   const values = numbers("MOTION", words);
   const whole = rows.length > 2 && rows.slice(2).every((row) => row.trim().split(/\s+/).length === width);
