@@ -36,6 +36,20 @@ def test_takes_motion_on_the_same_joints_as_it_stands(motion: Path) -> None:
     np.testing.assert_allclose(clips[0].rotations[::2], source.clip.rotations, atol=1e-12)
 
 
+@pytest.mark.parametrize("away", [900.0, 10.0])
+def test_a_pose_before_the_motion_is_left_out(motion: Path, away: float) -> None:
+    (source,) = read_motion(motion)
+    begin, rows = BVH.splitlines()[-3], 9 * BVH.splitlines()[-3:]
+    apart = [f"{away} {begin.split(maxsplit=1)[1]}"]
+    header = BVH[: BVH.index("Frames:")]
+    motion.write_text(header + "\n".join(["Frames: 28", "Frame Time: 0.1", *apart, *rows]) + "\n")
+    (loaded,) = load_motions(motion, source.skeleton, mapping=None, rate=10.0)
+    assert len(loaded.clip) == (27 if away > 100 else 28)
+    assert [note for note in loaded.notes if "the first frame" in note] == (
+        ["wave: the first frame, a pose apart from the motion, is left out."] if away > 100 else []
+    )
+
+
 def test_puts_motion_on_joints_of_other_names_by_a_mapping(motion: Path) -> None:
     source = read_motion(motion)[0]
     other = twice_as_large(source.skeleton)

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from mua.errors import InputError
 from mua.motion.face import own_face
+from mua.motion.leading_pose import without_leading_pose
 from mua.motion.long_feet import put_down
 from mua.motion.match import Matches, match_joints, require_limbs
 from mua.motion.planted_feet import Feet, plant_feet
@@ -47,7 +48,7 @@ def load_motions(
     """
     return [
         replace(put, clip=own_face(source, put.clip, face))
-        for source in read_motion(path)
+        for source in map(without_leading_pose, read_motion(path))
         for put in [
             _put_on(
                 path,
