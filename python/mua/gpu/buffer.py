@@ -26,7 +26,7 @@ class Buffer:
         bytes_given = content if isinstance(content, int) else len(data or b"")
         if bytes_given < 0:
             raise InputError(f"buffer {name}: size is {bytes_given} bytes, expected at least 0")
-        self.name, self.indirect = name, indirect
+        self.name = name
         self.size = -(-bytes_given // WORD) * WORD  # bytes, without what is added to fill the allocation
         self.serial = next(_serials)
         allocated = max(-(-bytes_given // ALLOCATION) * ALLOCATION, ALLOCATION)
