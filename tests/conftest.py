@@ -162,14 +162,6 @@ def untimed(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(entries, "frames_per_second", lambda *_, **__: 30.0)
 
 
-@pytest.fixture
-def packages(tmp_path: Path) -> list[Path]:
-    """Two small UPM packages that keep every rule."""
-    import upm_files  # here, because few tests need the tools
-
-    return upm_files.write(tmp_path)
-
-
 @pytest.fixture(scope="session")
 def trained(written: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The avatar that mua-train makes of `written`, its working files beside it; tests leave them as they are."""

@@ -20,7 +20,6 @@ from pathlib import Path, PurePosixPath
 
 import gen_meta
 import lint_upm
-from upm_package import FOLDED
 
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGE, KERNELS = ROOT / "unity-package", ROOT / "ComputeShaders"
@@ -33,8 +32,8 @@ GOLDEN_IN_PACKAGE = f"{TESTS}/Golden~"  # where Runtime/SelfTest/GoldenFolder.cs
 
 PREFIX = "package/"  # the root folder of npm's tarballs
 FOLDER = KERNELS.name
-NAME = "com.mua.avatar"
-SEPARATE, TOGETHER = f"Packages/{FOLDED[FOLDER]}/", f"Packages/{NAME}/{FOLDER}/"
+NAME, FOLDED = "com.mua.avatar", "com.mua.kernels"
+SEPARATE, TOGETHER = f"Packages/{FOLDED}/", f"Packages/{NAME}/{FOLDER}/"
 SHADERS = (".shader", ".hlsl", ".cginc", ".compute")
 LINK = re.compile(rb"!?\[([^\]]*)\]\((?!https?:|#)[^)]*\)")
 MODE, TIME = 0o644, 946684800  # seconds; 2000-01-01, as some tools refuse the year 1970
@@ -63,7 +62,7 @@ def _files(folder: Path) -> dict[str, bytes]:
 def _packed(path: str, content: bytes) -> bytes:
     if path == "package.json":
         manifest = json.loads(content)
-        del manifest["dependencies"][FOLDED[FOLDER]]
+        del manifest["dependencies"][FOLDED]
         return (json.dumps(manifest, indent=2) + "\n").encode()
     if path.endswith(".md"):
         return unlinked(content)

@@ -92,11 +92,7 @@ CHANGES: list[tuple[str, bytes | None, str]] = [
         b"#pragma kernel A\n",
         "ComputeShaders/mlp_matmul.compute: other bytes than in the checkout",
     ),
-    (
-        "ComputeShaders.meta",
-        None,
-        "com.mua.avatar/ComputeShaders: no .meta file, so that Unity ignores it in an installed package",
-    ),
+    ("ComputeShaders.meta", None, "ComputeShaders.meta: missing"),
     ("Runtime/Notes.txt", b"", "Runtime/Notes.txt: not in the checkout"),
     (
         "Runtime/Notes.cs",
