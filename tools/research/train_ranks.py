@@ -3,8 +3,8 @@
 python tools/research/train_ranks.py hero.work/recording-* [other.work/recording-*] [--closed-form] [--device cuda]
 python tools/research/train_ranks.py hero.work/recording-* --sizes 24,96,16/64,256,64/72/192
 
-Both branches are trained as mua-train does; the mesh is the teacher's. Errors are decibels, training and held out:
-"first order" from subbands weighted by how much images change, "drawn" from images of the teacher and the student.
+Both branches are trained as mua-train does; the mesh is the teacher's. PSNR between images of the teacher and the
+student in decibels, training and held out.
 """
 
 import argparse
@@ -43,7 +43,6 @@ from mua.wavelets import Bands
 
 BODY = Body(ENCODING.width, 3 * (9 + 6 * len(ENCODING.joints)), RINGS * SPOKES, 300_000)  # as comparisons.md counts
 KEPT = "sensitivities of images"
-FRAMES, AT_ONCE = 200, 20  # of each kind whose subbands are compared, and how many of them at once
 DRAWN = 16  # frames of each kind
 VIEWS, SIDE, ELEVATION = (0.5, 3.4), 256, 0.1  # azimuths in radians; pixels
 Predict = Callable[[Array, bool], Bands]  # the subbands of recorded frames, by rows, of training or held out
@@ -57,7 +56,7 @@ class Shared(Checkpoints):
             super().save(stage, state)
 
 
-def main() -> None:
+def main(words: Sequence[str] | None = None) -> None:
     arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     arguments.add_argument("recordings", type=Path, nargs="+")
     arguments.add_argument("--preset", choices=PRESETS, default="paper", help="of which the schedule is")
@@ -70,9 +69,9 @@ def main() -> None:
     )
     arguments.add_argument("--closed-form", action="store_true", help="bases with their best coefficients, no networks")
     arguments.add_argument("--device", default="cpu", help="cpu or cuda")
-    given = arguments.parse_args()
-    print("| recording | geometry | appearance | hidden | GFLOPs | M parameters | first order | drawn |")
-    print("| --- | --- | --- | --- | --- | --- | --- | --- |", flush=True)
+    given = arguments.parse_args(words)
+    print("| recording | geometry | appearance | hidden | GFLOPs | M parameters | PSNR |")
+    print("| --- | --- | --- | --- | --- | --- | --- |", flush=True)
     until: StageName | None = "bases" if given.closed_form else None
     for path in given.recordings:
         for line in measure(Recording(path), given.preset, given.sizes, torch.device(given.device), until=until):
@@ -108,9 +107,8 @@ def measure(
         ranks = (" ".join(map(str, vars(part).values())) for part in (sizes.geometry, sizes.appearance))
         spent, held = costs(own) / (1e9, 1e6)
         predict = by_pose(student, recording) if until is None else by_subbands(student, recording)
-        near = (first_order(predict, recording, seen), drawn(predict, student, recording))
-        found = (" / ".join(f"{each:.2f}" for each in kinds) for kinds in near)
-        yield " | ".join([*ranks, f"{sizes.hidden}", f"{spent:.3f}", f"{held:.1f}", *found]) + " |"
+        near = " / ".join(f"{each:.2f}" for each in drawn(predict, student, recording))
+        yield " | ".join([*ranks, f"{sizes.hidden}", f"{spent:.3f}", f"{held:.1f}", near]) + " |"
 
 
 def costs(settings: Settings) -> Array:
@@ -159,38 +157,11 @@ def by_subbands(student: Student, recording: Recording) -> Predict:
     geometry, appearance = (BestCoefficients(branch) for branch in student.branches)
 
     def predict(rows: Array, held_out: bool) -> Bands:
-        truth = Bands(*(band.to(student.mean) for band in subbands(recording, rows, held_out)))
+        recorded = recording.subbands(slice(0, CHANNELS), rows, held_out=held_out)
+        truth = Bands(*(band.to(student.mean) for band in recorded))
         return student.synthesize((geometry(truth.of(GEOMETRY)), appearance(truth.of(APPEARANCE))))
 
     return predict
-
-
-def subbands(recording: Recording, rows: Array, held_out: bool) -> Bands:
-    return recording.subbands(slice(0, CHANNELS), rows, held_out=held_out)
-
-
-@torch.no_grad()
-def first_order(predict: Predict, recording: Recording, seen: Bands) -> list[float]:
-    """Decibels of the error that the subbands' errors make in images, of the user's frames of each kind."""
-    found = []
-    for held_out in (False, True):
-        rows = user_rows(recording, held_out=held_out)
-        rows = rows[np.linspace(0, len(rows) - 1, min(len(rows), FRAMES)).astype(int)]
-        error = 0.0
-        for part in np.array_split(rows, max(len(rows) // AT_ONCE, 1)):
-            truth = subbands(recording, part, held_out)
-            for one, other, worth in zip(predict(part, held_out), truth, seen, strict=True):
-                error += float(((one - other.to(one)) * worth).double().square().sum())
-        found.append(-10 * np.log10(error / len(rows)))
-    return found
-
-
-def user_rows(recording: Recording, *, held_out: bool) -> Array:
-    """Rows of a kind without those of the built-in range of motion."""
-    clips = [clip for clip in recording.clips if clip.held_out == held_out]
-    return np.flatnonzero(
-        np.repeat([not is_range(clip.name) for clip in clips], [len(clip.recorded) for clip in clips])
-    )
 
 
 @torch.no_grad()
