@@ -26,7 +26,7 @@ from mua.pose.encoding import RATE
 from mua.rig.character import Character
 from mua.rig.surface_points import interpolate, spread_points
 from mua.teachers.simulated.simulated_surface import SimulatedSurface
-from mua.teachers.simulated.surface import SkinnedSurface
+from mua.teachers.simulated.skinned_surface import SkinnedSurface
 
 ATLAS = 2048  # texels of the rendered image of all materials along a side
 IMAGES, MESHES = "images/{clip}/{camera}/{frame:06d}.png", "meshes/{clip}/{frame:06d}.ply"

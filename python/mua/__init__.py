@@ -28,8 +28,8 @@ if TYPE_CHECKING:
     from mua.avatar.decode import Splats
     from mua.avatar.rendering import render
     from mua.baking.bake import bake
-    from mua.baking.distil import train
-    from mua.baking.train_teacher import teach
+    from mua.baking.teach import teach
+    from mua.baking.train import train
     from mua.characters.load import load_rig
     from mua.pose.clip import Clip
     from mua.pose.skeleton import Pose
@@ -66,8 +66,8 @@ _PLACES = {
     "load_rig": "mua.characters.load:load_rig",
     "render": "mua.avatar.rendering:render",
     "save": "mua.asset.write:write",
-    "teach": "mua.baking.train_teacher:teach",
-    "train": "mua.baking.distil:train",
+    "teach": "mua.baking.teach:teach",
+    "train": "mua.baking.train:train",
 }
 
 

@@ -10,7 +10,7 @@ from PIL import Image
 from trainings import Training
 
 from mua import rotation
-from mua.baking.frames_picture import CELL
+from mua.baking.contact_sheet import LARGE_CELL
 from mua.baking.recording_check import check
 from mua.fidelity.strips import CAPTION
 from mua.pose.skeleton import Pose
@@ -60,7 +60,7 @@ def test_says_what_is_there_and_leaves_a_picture_of_three_frames_and_nothing_els
         assert part in printed
     assert {path.name for path in tmp_path.iterdir()} == {"recording", "a_check.png"}
     picture = np.asarray(Image.open(tmp_path / "a_check.png"))
-    assert picture.shape == (CELL[1] + CAPTION, 3 * CELL[0], 3)
+    assert picture.shape == (LARGE_CELL[1] + CAPTION, 3 * LARGE_CELL[0], 3)
     for cell in np.split(picture[CAPTION:], 3, axis=1):
         assert 0.05 < np.mean(cell.min(axis=2) < 200) < 0.5  # a figure on white
 

@@ -242,7 +242,7 @@ def test_a_preset_says_how_large_the_student_is(
     written: Path, tmp_path: Path, command: Commands, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     given: list[Any] = []
-    monkeypatch.setattr("mua.baking.distil._distil", lambda _, settings, __: given.append(settings.student))
+    monkeypatch.setattr("mua.baking.train._train", lambda _, settings, __: given.append(settings.student))
     for name in ("tiny", "preview"):
         assert command("train", written, "-o", tmp_path / "a.muaavatar", "--preset", name).status == 0
     assert [settings.hidden for settings in given] == [preset(name).hidden for name in ("tiny", "preview")]
@@ -253,7 +253,7 @@ def test_a_budget_is_that_of_the_student(
     written: Path, tmp_path: Path, command: Commands, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     given: list[Any] = []
-    monkeypatch.setattr("mua.baking.distil._distil", lambda _, settings, __: given.append(settings.student.budget))
+    monkeypatch.setattr("mua.baking.train._train", lambda _, settings, __: given.append(settings.student.budget))
     budget = ("--budget-mflop", "40", "--budget-mb", "20")
     assert command("train", written, "-o", tmp_path / "a.muaavatar", *budget).status == 0
     assert given == [Budget(mflop=40, mb=20)]

@@ -121,7 +121,7 @@ def test_reports_that_gsplat_is_not_installed(
 def test_rejects_gsplat_without_a_gpu(
     tmp_path: Path, command: Commands, stand_in: None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("mua.baking.train_teacher.find_spec", lambda name: name)
+    monkeypatch.setattr("mua.baking.teach.find_spec", lambda name: name)
     folder = make_capture(tmp_path / "capture").folder
     said = command("teach", folder, "--rasteriser", "gsplat", "--device", "cpu", "-o", tmp_path / "t").sentence
     assert "--rasteriser gsplat: draws on NVIDIA GPUs only, and the device is cpu" in said

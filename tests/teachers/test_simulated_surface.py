@@ -12,7 +12,7 @@ from mua.rig.character import Character
 from mua.teachers.simulated import simulated_surface
 from mua.teachers.simulated.simulated_surface import SimulatedSurface
 from mua.teachers.simulated.simulation import Simulation
-from mua.teachers.simulated.surface import SkinnedSurface
+from mua.teachers.simulated.skinned_surface import SkinnedSurface
 
 SINGLE = 64 * float(np.finfo(np.float32).eps)  # metres; what is simulated in single precision
 

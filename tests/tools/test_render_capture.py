@@ -26,7 +26,7 @@ from mua.capture import open_capture
 from mua.capture.tracks import read_tracks
 from mua.errors import InputError
 from mua.rig.surface_points import interpolate, spread_points
-from mua.teachers.simulated.surface import SkinnedSurface
+from mua.teachers.simulated.skinned_surface import SkinnedSurface
 
 RADIANS = 1e-4
 

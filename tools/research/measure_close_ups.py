@@ -57,8 +57,8 @@ from mua.rig.body_parts import BODY_PARTS, body_parts
 from mua.rig.character import Character
 from mua.scene import Material, Part
 from mua.teachers.simulated.simulated_surface import SimulatedSurface
+from mua.teachers.simulated.skinned_surface import MovedSurface, SkinnedSurface
 from mua.teachers.simulated.still import StillTeacher
-from mua.teachers.simulated.surface import MovedSurface, SkinnedSurface
 
 GREY = 0.5
 BORDER, FRINGE = 0.02, 0.01  # metres about an open border, and outside the silhouette

@@ -50,7 +50,7 @@ from mua.recording import Recording
 from mua.rig.build import build_rig
 from mua.rig.character import Character
 from mua.rig.rig import Rig
-from mua.teachers.simulated.surface import MovedSurface
+from mua.teachers.simulated.skinned_surface import MovedSurface
 from mua.teachers.simulated.teacher import SimulatedTeacher
 
 RUN_UP = 0.5  # seconds that are simulated before the first frame that is held out

@@ -1,4 +1,4 @@
-"""A rigged character and its motion become a verified `.muaavatar`, in one call."""
+"""mua.bake: a rigged character and its motion become a verified `.muaavatar`, in one call."""
 
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated, Any

@@ -1,4 +1,4 @@
-"""The contact sheet: teacher, student and their difference side by side, on frames that the student never saw."""
+"""Images of recorded frames under captions: the teacher alone, or the contact sheet of teacher, student, difference."""
 
 from collections.abc import Iterable, Sequence
 from functools import partial
@@ -14,10 +14,11 @@ from mua.baking.portrait import portrait
 from mua.fidelity.background import background_for, over
 from mua.fidelity.strips import GAIN, caption, difference, sheet
 from mua.recording import WholeFrame
+from mua.rig.rig import Rig
 from mua.training.threads import in_order
 from mua.training.torch_threads import few_threads
 
-CELL = (288, 416)  # width, height, pixels
+CELL, LARGE_CELL = (288, 416), (360, 520)  # width, height, pixels; of a contact sheet, of the teacher alone
 COLUMNS = 2  # frames beside each other
 
 
@@ -41,3 +42,16 @@ def _strip(avatar: Avatar, frame: WholeFrame) -> Array:
     kind = "held out" if frame.clip.held_out else "trained on"
     titles = (f"teacher: {frame.clip.name}, frame {frame.index} ({kind})", "student", f"difference x{GAIN}")
     return np.vstack([caption(titles, CELL[0]), picture])
+
+
+def frames_picture(rig: Rig, frames: Sequence[WholeFrame]) -> Image.Image:
+    """A cell for each frame: its splats posed, from the front a little to the side, under the name of its clip."""
+    return Image.fromarray(np.hstack([_cell(rig, frame) for frame in frames]))
+
+
+def _cell(rig: Rig, frame: WholeFrame) -> Array:
+    pose = frame.clip.pose(frame.index)
+    splats = pose_splats(rig, frame.mesh, texture=frame.texture, pose=pose)
+    drawn = render_premultiplied(splats, portrait(splats, rig.skeleton, pose=pose, screen=LARGE_CELL))
+    text = f"{frame.clip.name}, frame {frame.index}{' (held out)' if frame.clip.held_out else ''}"
+    return np.vstack([caption([text], LARGE_CELL[0]), to_bytes(over(drawn, background_for([drawn])))])

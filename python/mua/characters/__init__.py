@@ -1,0 +1,1 @@
+"""Characters from files of FBX, glTF, VRM, USD and Skeletool: one surface on rigid joints, in metres."""

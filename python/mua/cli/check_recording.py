@@ -5,7 +5,7 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
-from mua.baking.frames_picture import frames_picture
+from mua.baking.contact_sheet import frames_picture
 from mua.baking.recording_check import RecordingCheck, check
 from mua.cli.console import printer, say
 from mua.errors import InputError

@@ -3,7 +3,7 @@
 import os
 from typing import Any
 
-from mua.baking.train_teacher import teach
+from mua.baking.teach import teach
 from mua.cli.console import printer, say
 from mua.cli.display import Display
 from mua.cli.failure import run_command

@@ -6,7 +6,7 @@ from typing import Annotated, Any
 
 import typer
 
-from mua.baking.distil import train
+from mua.baking.train import train
 from mua.cli.console import printer
 from mua.cli.display import Display, show
 from mua.cli.failure import run_command

@@ -1,0 +1,1 @@
+"""The numpy reference of every GPU kernel, in frame order."""

@@ -1,0 +1,1 @@
+"""Motion from files, and its retargeting to a character's skeleton."""

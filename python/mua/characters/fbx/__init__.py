@@ -1,0 +1,1 @@
+"""FBX files, by ufbx in a process of its own."""

@@ -1,0 +1,1 @@
+"""glTF and VRM files, by pygltflib."""

@@ -1,0 +1,1 @@
+"""Files of Skeletool, as DDC, ASH and UMA have them."""

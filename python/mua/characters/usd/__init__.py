@@ -1,0 +1,1 @@
+"""USD files, by UsdSkel."""

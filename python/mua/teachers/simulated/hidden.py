@@ -20,7 +20,7 @@ from mua.arrays import Array
 from mua.rig.character import Character
 from mua.rig.skinning import moving_joints
 from mua.teachers.simulated.rays import Boxes, Tree, meets
-from mua.teachers.simulated.surface import SkinnedSurface
+from mua.teachers.simulated.skinned_surface import SkinnedSurface
 from mua.training.threads import in_order
 from mua.training.warp_start import NO_NANS, start
 

@@ -15,7 +15,7 @@ from mua.rig.skinning import Skinning, transform
 from mua.teachers.simulated.folds import Folds
 from mua.teachers.simulated.looseness import estimate_looseness
 from mua.teachers.simulated.simulation import Simulation, hangs
-from mua.teachers.simulated.surface import MovedSurface
+from mua.teachers.simulated.skinned_surface import MovedSurface
 
 
 class SimulatedSurface:

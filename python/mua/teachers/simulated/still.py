@@ -15,8 +15,8 @@ from mua.rig.character import Character
 from mua.rig.skinning import transform
 from mua.teacher import Light, TeacherFrame
 from mua.teachers.simulated.chords import straighten
+from mua.teachers.simulated.skinned_surface import MovedSurface, SkinnedSurface
 from mua.teachers.simulated.smoothing import TURN_WAVELENGTH, low_pass
-from mua.teachers.simulated.surface import MovedSurface, SkinnedSurface
 from mua.teachers.simulated.texels import SurfaceTexels
 from mua.texture.surfels import SurfaceFrames
 

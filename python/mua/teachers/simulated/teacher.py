@@ -24,9 +24,9 @@ from mua.rig.expressions import Expressions
 from mua.teacher import Light, TeacherFrame
 from mua.teachers.simulated.shading import shade, visibility
 from mua.teachers.simulated.simulated_surface import SimulatedSurface
+from mua.teachers.simulated.skinned_surface import MovedSurface
 from mua.teachers.simulated.smoothing import low_pass
 from mua.teachers.simulated.still import StillTeacher
-from mua.teachers.simulated.surface import MovedSurface
 from mua.teachers.simulated.texels import SurfaceTexels
 from mua.texture.surfels import vertex_normals
 

@@ -1,4 +1,4 @@
-"""A capture becomes a teacher, in one call."""
+"""mua.teach: a capture becomes a teacher, in one call."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace

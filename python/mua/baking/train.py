@@ -1,4 +1,4 @@
-"""A recording becomes a verified `.muaavatar`, in one call."""
+"""mua.train: a recording becomes a verified `.muaavatar`, in one call."""
 
 import os
 from contextlib import AbstractContextManager, nullcontext
@@ -74,7 +74,7 @@ def train(
         mua.train("recordings/subject01", output="subject01.muaavatar", storage="i8")
     """
     options = read_options(train, locals())
-    settings = DistilSettings(
+    settings = TrainSettings(
         **{name: options[name] for name in ("output", "stage", "clips", "storage", "device")},
         work=work_directory(options["output"], options["work"]),
         student=student_settings(options),
@@ -83,11 +83,11 @@ def train(
         recording = Path(recording)
         require_recording(recording)
     with naming_extras("mua.train"):
-        return _distil(recording, settings, listener or Log())
+        return _train(recording, settings, listener or Log())
 
 
 @dataclass(frozen=True)
-class DistilSettings:
+class TrainSettings:
     """What a recording is distilled to, as the options of mua-train say."""
 
     output: Path
@@ -99,7 +99,7 @@ class DistilSettings:
     device: DeviceName
 
 
-def _distil(recording: "Path | Recording", settings: DistilSettings, listener: Listener) -> "Baked | None":
+def _train(recording: "Path | Recording", settings: TrainSettings, listener: Listener) -> "Baked | None":
     from mua.baking.distillation import Distillation, choose_device  # seconds of loading
     from mua.baking.playback import choose, whole_clips
     from mua.baking.report import UNSAID
