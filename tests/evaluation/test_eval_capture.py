@@ -23,8 +23,9 @@ from mua.avatar.decode import Splats, pose_splats
 from mua.capture import open_capture
 from mua.errors import InputError
 from mua.evaluation import capture_report, capture_scores
-from mua.evaluation.capture_scores import TRAINED, UNSEEN, FilmedEntry, Judged, Likeness, Shot, judge, likeness, shots
+from mua.evaluation.capture_scores import TRAINED, UNSEEN, FilmedEntry, Judged, Shot, judge, shots
 from mua.evaluation.cost import Cost
+from mua.evaluation.metrics import Scores, compare
 from mua.pose.clip import Clip
 from mua.pose.resample import resample
 from mua.pose.skeleton import Skeleton
@@ -92,13 +93,13 @@ def test_what_drew_the_pictures_is_nearly_all_there(capture: Path) -> None:
 
 def test_likeness_of_a_picture_that_is_off_by_a_tenth() -> None:
     truth = np.full((20, 30, 3), 0.5)
-    assert likeness(truth + 0.1, truth).psnr == pytest.approx(20, abs=1e-3)
-    assert likeness(truth, truth).psnr == np.inf
+    assert compare(truth + 0.1, truth, multiscale=False)[0].psnr == pytest.approx(20, abs=1e-3)
+    assert compare(truth, truth, multiscale=False)[0].psnr == np.inf
 
 
 def judged() -> list[Judged]:
     picture = np.full((9, 7, 3), 128, np.uint8)
-    scores = {name: Likeness(db, 0.9, 0.1, np.nan) for name, db in (("a", 20.0), ("b", 30.0))}
+    scores = {name: Scores(db, 0.9, np.nan, 0.1, np.nan) for name, db in (("a", 20.0), ("b", 30.0))}
     pictures = {"image": picture, "a": picture, "b": picture}
     return [Judged(Shot(TRAINED, "walk", frame, "cam"), pictures, scores) for frame in range(2)]
 
@@ -145,7 +146,7 @@ def test_the_command_compares_a_teacher_with_the_pictures(
         }
         scores = {line["entry"]: float(line["psnr"]) for line in lines if line["clip"] == clip}
         for name in ("mean texture", "teacher"):
-            of_8_bits = likeness(written[name.replace(" ", "_")], written["image"]).psnr
+            of_8_bits = compare(written[name.replace(" ", "_")], written["image"], multiscale=False)[0].psnr
             assert of_8_bits == pytest.approx(scores[name], abs=0.2)
 
 

@@ -13,8 +13,9 @@ from PIL import Image
 
 from mua.avatar.decode import pose_splats
 from mua.evaluation.capture_report import sheet_names, student_of
-from mua.evaluation.capture_scores import TRAINED, UNSEEN, FilmedEntry, Judged, Likeness, Shot
+from mua.evaluation.capture_scores import TRAINED, UNSEEN, FilmedEntry, Judged, Shot
 from mua.evaluation.cost import Cost, learnt_cost
+from mua.evaluation.metrics import Scores
 from mua.recording import Recording
 from mua.training.checkpoint import Checkpoints
 from mua_research import capture_systems
@@ -160,7 +161,7 @@ def views() -> list[Judged]:
         Judged(
             Shot(split, "clip", view, "cam"),
             {},
-            {name: Likeness(float(values[view]), 0.9, 0.1, np.nan) for name, values in own.items()},
+            {name: Scores(float(values[view]), 0.9, np.nan, 0.1, np.nan) for name, values in own.items()},
         )
         for split, own in PSNR.items()
         for view in range(2)

@@ -14,15 +14,14 @@ from rich.table import Table
 
 from mua.arrays import Array
 from mua.avatar.rendering import to_bytes
-from mua.evaluation.capture_scores import IMAGE, SPLITS, FilmedEntry, Judged, Likeness, Shot, Standing, mean
+from mua.evaluation.capture_scores import IMAGE, SPLITS, FilmedEntry, Judged, Shot, Standing, mean_of
+from mua.evaluation.report import DIGITS, HEADINGS, NOTHING, cell, finite, table_lines
 from mua.evaluation.settings import OURS
 from mua.fidelity.strips import GAIN, caption, difference
 from mua.files.write import replacing
 
-DIGITS = {"psnr": 2, "ssim": 4, "flip": 4, "lpips": 2}
-HEADINGS = {"psnr": "PSNR", "ssim": "SSIM", "flip": "FLIP", "lpips": "LPIPS"}
+METRICS = ("psnr", "ssim", "flip", "lpips")
 COSTS = ("M parameters", "MFLOP")
-NOTHING = "-"
 LEAST_WIDTH = 190  # pixels of an image under its caption
 SHEET_ROWS = 6
 NAMED = 4  # views without the person that are named of each camera
@@ -31,7 +30,7 @@ NAMED = 4  # views without the person that are named of each camera
 def rows(judged: Sequence[Judged], entries: Sequence[FilmedEntry]) -> list[list[str]]:
     """A row for each entry: its name, then PSNR, SSIM, FLIP and, if measured, LPIPS of each split, then its cost."""
     return [
-        [one.name, *(cell for split in SPLITS for cell in _cells(mean(judged, one.name, split), judged)), *_costs(one)]
+        [one.name, *(figure for split in SPLITS for figure in _figures(judged, one.name, split)), *_costs(one)]
         for one in entries
     ]
 
@@ -51,20 +50,18 @@ def table(judged: Sequence[Judged], entries: Sequence[FilmedEntry]) -> Table:
 
 def markdown(judged: Sequence[Judged], entries: Sequence[FilmedEntry], about: Sequence[str]) -> str:
     """The table below the sentences about it."""
-    heads = headings(judged)
-    lines = [heads, ["---"] * len(heads), *rows(judged, entries)]
-    listed = "\n".join(f"- {sentence}" for sentence in about)
-    return f"{listed}\n\n" + "\n".join(f"| {' | '.join(line)} |" for line in lines) + "\n"
+    listed = [f"- {sentence}" for sentence in about]
+    return "\n".join([*listed, "", *table_lines(headings(judged), rows(judged, entries)), ""])
 
 
 def as_csv(judged: Sequence[Judged]) -> str:
     """A line for each view and entry."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["split", "clip", "frame", "camera", "entry", *DIGITS])
+    writer.writerow(["split", "clip", "frame", "camera", "entry", *METRICS])
     for one in judged:
         for name, scores in one.scores.items():
-            writer.writerow([*asdict(one.shot).values(), name, *asdict(scores).values()])
+            writer.writerow([*asdict(one.shot).values(), name, *(getattr(scores, metric) for metric in METRICS)])
     return text.getvalue()
 
 
@@ -78,7 +75,7 @@ def as_json(
             "system": one.system or None,
             "scale": one.scale if one.system else None,
             **asdict(one.cost),
-            "mean": {split: _finite(mean(judged, one.name, split)) for split in SPLITS},
+            "mean": {split: finite(mean_of(judged, one.name, split)) for split in SPLITS},
         }
         for one in entries
     ]
@@ -151,13 +148,12 @@ def _centred(picture: Array, width: int) -> Array:
 
 def _metrics(judged: Sequence[Judged]) -> list[str]:
     lpips = any(not math.isnan(scores.lpips) for one in judged for scores in one.scores.values())
-    return [metric for metric in DIGITS if metric != "lpips" or lpips]
+    return [metric for metric in METRICS if metric != "lpips" or lpips]
 
 
-def _cells(scores: Likeness | None, judged: Sequence[Judged]) -> list[str]:
-    return [
-        NOTHING if scores is None else f"{getattr(scores, metric):.{DIGITS[metric]}f}" for metric in _metrics(judged)
-    ]
+def _figures(judged: Sequence[Judged], name: str, split: str) -> list[str]:
+    scores = mean_of(judged, name, split)
+    return [cell(getattr(scores, metric), DIGITS[metric]) for metric in _metrics(judged)]
 
 
 def _costs(entry: FilmedEntry) -> list[str]:
@@ -166,9 +162,3 @@ def _costs(entry: FilmedEntry) -> list[str]:
         NOTHING if cost.parameters is None else f"{cost.parameters / 1e6:.3f}",
         NOTHING if cost.flops is None else f"{cost.flops / 1e6:.2f}",
     ]
-
-
-def _finite(scores: Likeness | None) -> dict[str, float | None] | None:
-    if scores is None:
-        return None
-    return {name: value if math.isfinite(value) else None for name, value in asdict(scores).items()}

@@ -3,15 +3,12 @@
 Over white and inside the box around the mask; PSNR over all pixels and colours, SSIM with the usual window.
 """
 
-import math
 from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 
-import flip_evaluator
 import numpy as np
 import torch
-from torch import Tensor
 
 from mua.arrays import Array
 from mua.asset.read import read
@@ -22,14 +19,13 @@ from mua.capture import Capture
 from mua.capture.view import View
 from mua.errors import InputError
 from mua.evaluation.cost import Cost, file_cost
-from mua.evaluation.metrics import LPIPS_UNIT
+from mua.evaluation.metrics import Scores, compare, mean
 from mua.pose.clip import Clip
 from mua.pose.skeleton import Skeleton
 from mua.pose.windows import window_of
 from mua.splatting.perceptual import Lpips
 from mua.splatting.projection import Eye, TorchSplats
 from mua.splatting.rasterise import rasterise
-from mua.splatting.ssim import structural_similarity
 from mua.teacher import TeacherFrame
 from mua.teachers.trained.teacher import TrainedTeacher
 
@@ -64,23 +60,13 @@ class Shot:
     camera: str
 
 
-@dataclass(frozen=True)
-class Likeness:
-    """What an image is worth beside the capture's."""
-
-    psnr: float  # dB
-    ssim: float
-    flip: float
-    lpips: float  # times 1000; nan where no weights were given
-
-
 @dataclass(frozen=True, eq=False)
 class Judged:
     """One view: the capture's image, then every entry's by name where images are kept, and what these are worth."""
 
     shot: Shot
     pictures: dict[str, Array]  # [H, W, 3] uint8
-    scores: dict[str, Likeness]  # none where nobody is in the view
+    scores: dict[str, Scores]  # none where nobody is in the view
 
 
 @dataclass(frozen=True)
@@ -176,7 +162,7 @@ def judge(
             decoded = {one.name: one.show(motions[shot.clip], capture.steps * shot.frame) for one in entries}
         truth = view.mask[..., None] * view.image + (1 - view.mask[..., None])
         pictures = {name: drawn(splats, view.camera) for name, splats in decoded.items()}
-        scores = {name: likeness(picture, truth, lpips=lpips) for name, picture in pictures.items()}
+        scores = {name: compare(picture, truth, lpips=lpips, multiscale=False)[0] for name, picture in pictures.items()}
         shown = {IMAGE: truth, **pictures} if shot in kept else {}
         yield Judged(shot, {name: to_bytes(picture) for name, picture in shown.items()}, scores)
 
@@ -192,35 +178,9 @@ def drawn(splats: Splats, camera: Camera) -> Array:
     return np.asarray(rasterise(posed, Eye.of(camera, box), box, background=torch.ones(3)).clamp(0, 1))
 
 
-def likeness(
-    image: Array,  # [H, W, 3] in 0..1
-    truth: Array,
-    *,
-    lpips: Lpips | None = None,
-) -> Likeness:
-    """The scores of an image."""
-    image, truth = (np.ascontiguousarray(picture, np.float32) for picture in (image, truth))
-    pair = [torch.from_numpy(picture) for picture in (image, truth)]
-    differs = flip_evaluator.evaluate(truth, image, "LDR", applyMagma=False, computeMeanError=True)[1]
-    square = float(np.mean(np.square(image - truth, dtype=np.float64)))
-    return Likeness(
-        psnr=-10 * math.log10(square) if square else math.inf,
-        ssim=float(structural_similarity(*pair)),
-        flip=float(differs),
-        lpips=math.nan if lpips is None else LPIPS_UNIT * lpips(*(_planes(picture) for picture in pair)),
-    )
-
-
-def mean(judged: Sequence[Judged], name: str, split: str) -> Likeness | None:
-    """The mean of an entry over the views of a split; None over none."""
-    found = [one.scores[name] for one in judged if one.shot.split == split]
-    if not found:
-        return None
-    return Likeness(*(float(np.mean([getattr(one, field.name) for one in found])) for field in fields(Likeness)))
-
-
-def _planes(picture: Tensor) -> Tensor:
-    return picture.permute(2, 0, 1)[None]
+def mean_of(judged: Sequence[Judged], name: str, split: str) -> Scores:
+    """The mean of an entry over the views of a split, nan over none."""
+    return mean([one.scores[name] for one in judged if one.shot.split == split])
 
 
 def _shown(teacher: TrainedTeacher) -> Show:

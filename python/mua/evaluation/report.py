@@ -111,19 +111,24 @@ def markdown(results: Sequence[Result], setting: Setting) -> str:
     """The paper's table, what failed, and what storage costs."""
     kinds = [f"{name}, {kind}" for kind in KINDS for name in _metrics(setting).values()]
     heads = ["system", *kinds, *COSTS]
-    lines = ["| " + " | ".join(heads) + " |", "|" + " --- |" * len(heads)]
+    rows = []
     for result in results:
-        figures = [cell for held_out in KINDS.values() for cell in _figures(result, held_out, setting)]
-        lines.append("| " + " | ".join([result.entry.name, *figures, *costs_of(result)]) + " |")
+        figures = [figure for held_out in KINDS.values() for figure in _figures(result, held_out, setting)]
+        rows.append([result.entry.name, *figures, *costs_of(result)])
+    lines = table_lines(heads, rows)
     failed = [f"- {result.entry.name}: {result.failure}" for result in results if result.failure]
     if failed:
         lines += ["", "Failed:", "", *failed]
     stored = storage_costs(results)
     if stored:
         heads = ["file", "storage", "MB", *(f"{kind}, dB" for kind in KINDS)]
-        lines += ["", "What storage costs:", "", "| " + " | ".join(heads) + " |", "|" + " --- |" * len(heads)]
-        lines += ["| " + " | ".join(row) + " |" for row in stored]
+        lines += ["", "What storage costs:", "", *table_lines(heads, stored)]
     return "\n".join([*lines, "", *legend(results, setting), ""])
+
+
+def table_lines(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
+    """A table in Markdown."""
+    return [f"| {' | '.join(line)} |" for line in (heads, ["---"] * len(heads), *rows)]
 
 
 def storage_costs(results: Sequence[Result]) -> list[tuple[str, ...]]:
@@ -136,7 +141,7 @@ def storage_costs(results: Sequence[Result]) -> list[tuple[str, ...]]:
         widest = min(same, key=lambda r: STORAGES.index(r.entry.cost.storage))
         if len(same) > 1:
             gains = [f"{result.of(kind).psnr - widest.of(kind).psnr:+.3f}" for kind in KINDS.values()]
-            rows.append((result.entry.name, cost.storage, _cell((cost.bytes or 0) / 1e6, 2), *gains))
+            rows.append((result.entry.name, cost.storage, cell((cost.bytes or 0) / 1e6, 2), *gains))
     return rows
 
 
@@ -162,8 +167,8 @@ def as_json(results: Sequence[Result], setting: Setting) -> str:
             "system": result.entry.name,
             "failure": result.failure,
             **asdict(result.entry.cost),
-            "mean": {kind: _finite(asdict(result.of(held_out))) for kind, held_out in KINDS.items()},
-            "pictures": [{**asdict(s), "scores": _finite(asdict(s.scores))} for s in result.samples],
+            "mean": {kind: finite(result.of(held_out)) for kind, held_out in KINDS.items()},
+            "pictures": [{**asdict(s), "scores": finite(s.scores)} for s in result.samples],
         }
         for result in results
     ]
@@ -174,10 +179,10 @@ def costs_of(result: Result) -> list[str]:
     """The cells under COSTS."""
     cost = result.entry.cost
     return [
-        NOTHING if cost.flops is None else _cell(cost.flops / 1e9, 3),
-        NOTHING if cost.parameters is None else _cell(cost.parameters / 1e6, 2),
-        NOTHING if cost.bytes is None else _cell(cost.bytes / 1e6, 1),
-        NOTHING if cost.fps is None else _cell(cost.fps, 1),
+        NOTHING if cost.flops is None else cell(cost.flops / 1e9, 3),
+        NOTHING if cost.parameters is None else cell(cost.parameters / 1e6, 2),
+        NOTHING if cost.bytes is None else cell(cost.bytes / 1e6, 1),
+        NOTHING if cost.fps is None else cell(cost.fps, 1),
     ]
 
 
@@ -188,7 +193,7 @@ def _metrics(setting: Setting) -> dict[str, str]:
 
 def _figures(result: Result, held_out: bool, setting: Setting) -> list[str]:
     scores: Scores = result.of(held_out)
-    return [_cell(getattr(scores, metric), DIGITS[metric]) for metric in _metrics(setting)]
+    return [cell(getattr(scores, metric), DIGITS[metric]) for metric in _metrics(setting)]
 
 
 def _meshed(result: Result) -> bool:
@@ -196,9 +201,11 @@ def _meshed(result: Result) -> bool:
     return result.entry.own_mesh
 
 
-def _cell(value: float, digits: int) -> str:
+def cell(value: float, digits: int) -> str:
+    """A number in a table."""
     return NOTHING if math.isnan(value) else f"{value:.{digits}f}"
 
 
-def _finite(values: dict[str, float]) -> dict[str, float | None]:
-    return {name: value if math.isfinite(value) else None for name, value in values.items()}
+def finite(scores: Scores) -> dict[str, float | None]:
+    """Null where there is no number, for JSON."""
+    return {name: value if math.isfinite(value) else None for name, value in asdict(scores).items()}

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter
 
-from mua.evaluation.capture_scores import SPLITS, TEACHER, FilmedEntry, Judged, mean
+from mua.evaluation.capture_scores import SPLITS, TEACHER, FilmedEntry, Judged, mean_of
 from mua.evaluation.settings import OURS, SYSTEM_NAMES
 
 DPI = 120
@@ -47,8 +47,7 @@ def points(
     cost: Callable[[FilmedEntry], float],
 ) -> list[tuple[float, float]]:
     """Cost and PSNR of a system's sizes in a split, the cheapest first."""
-    own = [(cost(one), mean(judged, one.name, split)) for one in entries if one.system == system]
-    return sorted((place, scores.psnr) for place, scores in own if scores is not None)
+    return sorted((cost(one), mean_of(judged, one.name, split).psnr) for one in entries if one.system == system)
 
 
 def _lines(
@@ -65,6 +64,5 @@ def _lines(
         if line:
             width = 2.5 if name == OURS else 1.2
             panel.plot(*zip(*line, strict=True), f"{MARKS[place]}-", color=palette(place), linewidth=width, label=name)
-    teacher = mean(judged, TEACHER, split) if any(one.name == TEACHER for one in entries) else None
-    if teacher is not None:
-        panel.axhline(teacher.psnr, color="0.3", linestyle="--", linewidth=1, label=TEACHER)
+    if any(one.name == TEACHER for one in entries):
+        panel.axhline(mean_of(judged, TEACHER, split).psnr, color="0.3", linestyle="--", linewidth=1, label=TEACHER)

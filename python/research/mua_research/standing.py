@@ -1,10 +1,11 @@
 """How a system stands among those that cost at most as much: who is nearest to the images, and how surely."""
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
 
-from mua.evaluation.capture_scores import SPLITS, FilmedEntry, Judged, Standing, mean
+from mua.evaluation.capture_scores import SPLITS, FilmedEntry, Judged, Standing, mean_of
 from mua.evaluation.settings import OURS
 
 
@@ -20,7 +21,8 @@ def standings(judged: Sequence[Judged], entries: Sequence[FilmedEntry]) -> list[
 
 def best(judged: Sequence[Judged], names: Sequence[str], split: str) -> str | None:
     """Whose mean PSNR is highest in a split; None where there is nobody or no view."""
-    scored = {name: scores.psnr for name in names if (scores := mean(judged, name, split)) is not None}
+    psnr = {name: mean_of(judged, name, split).psnr for name in names}
+    scored = {name: value for name, value in psnr.items() if not math.isnan(value)}
     return max(scored, key=scored.__getitem__) if scored else None
 
 
