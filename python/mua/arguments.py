@@ -100,3 +100,8 @@ def describe(value: object) -> str:
 
 def _written(shape: tuple[int | None, ...]) -> str:
     return f"[{', '.join('any' if n is None else str(n) for n in shape)}]"
+
+
+def listed(words: Sequence[str]) -> str:
+    """Join words as in a sentence: a, b or c."""
+    return " or ".join(part for part in (", ".join(words[:-1]), words[-1]) if part)

@@ -6,7 +6,6 @@ clip in single precision, the median of several runs; the first compiles the ker
 
 import argparse
 from collections.abc import Callable
-from dataclasses import fields
 from functools import partial
 from pathlib import Path
 from time import perf_counter
@@ -56,14 +55,11 @@ def show_times(name: str, draw: Callable[[], torch.Tensor]) -> None:
 
 
 def on_device(frame: Splats, device: str) -> TorchSplats:
-    of = {field.name: getattr(frame, field.name, None) for field in fields(TorchSplats)}
-    of["turns"] = frame.texel_dq[:, :4]
-    tensors = {
-        name: torch.tensor(values, dtype=torch.float32, device=device).requires_grad_(name != "normals")
-        for name, values in of.items()
-        if values is not None
-    }
-    return TorchSplats(**tensors)
+    splats = TorchSplats.of(frame, device=device)
+    for name, values in vars(splats).items():
+        if name != "normals":
+            values.requires_grad_()
+    return splats
 
 
 def run(draw: Callable[[], torch.Tensor]) -> tuple[float, float]:

@@ -75,7 +75,7 @@ def shares_behind(
             splats = decode_clip_frame(whole, clip, frame=frame)
             normals = texel_normals(whole.rig, splats.canonical, splats.texel_dq)
             cameras = around(splats, texel_length(whole), first=number * VIEWS)
-            drawn, bounds = _in_torch(splats), torch.as_tensor(splats.bounds)
+            drawn, bounds = TorchSplats.of(splats), torch.as_tensor(splats.bounds)
             for shares in in_order(partial(_shares_behind, drawn, bounds, normals), cameras, threads=threads):
                 np.maximum(behind, shares, out=behind)
             progress(number + 1, len(poses))
@@ -139,12 +139,6 @@ def around(splats: Splats, texel: float, *, first: int) -> list[Camera]:
         side = int(np.clip(np.ceil(width / (PIXEL * max(texel, 1e-30))), 1, LARGEST_SIDE))
         cameras.append(orbit(box, screen=(side, side), azimuth=azimuth, elevation=elevation, fov=FOV))
     return cameras
-
-
-def _in_torch(splats: Splats) -> TorchSplats:
-    given = {"centres": splats.centres, "rotations": splats.rotations, "scales": splats.scales, "sh": splats.sh}
-    given |= {"opacities": splats.opacities, "turns": splats.texel_dq[:, :4]}
-    return TorchSplats(**{name: torch.as_tensor(np.ascontiguousarray(values)) for name, values in given.items()})
 
 
 def _shares_behind(splats: TorchSplats, bounds: torch.Tensor, normals: Array, camera: Camera) -> Array:

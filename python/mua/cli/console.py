@@ -2,7 +2,9 @@
 
 import os
 
+from rich.box import HEAVY_HEAD, Box
 from rich.console import Console
+from rich.table import Table
 
 MOST_NAMES, FEW_NAMES = 8, 3  # that a sentence lists in full, and that it lists of more
 WIDE = 1000  # columns; a table takes what it needs of them
@@ -14,6 +16,14 @@ def printer(*, quiet: bool = False, highlight: bool = True) -> Console:
     if not console.is_terminal and "COLUMNS" not in os.environ:
         console.width = WIDE
     return console
+
+
+def figures(*heads: str, title: str | None = None, box: Box = HEAVY_HEAD) -> Table:
+    """A table of names and, to the right of them, figures."""
+    table = Table(*heads, title=title, box=box)
+    for column in table.columns[1:]:
+        column.justify = "right"
+    return table
 
 
 def brief(sentence: str) -> str:

@@ -9,7 +9,7 @@ from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
 
-from mua.cli.console import printer
+from mua.cli.console import figures, printer
 from mua.cli.failure import run_command
 from mua.deploy.steady import RATES
 from mua.deploy.unity import find, project_version
@@ -177,9 +177,7 @@ def _heading(benched: "Benched") -> str:
 
 
 def _figures(benched: "Benched") -> Table:
-    table = Table("", "min", "median", "95 %", box=SIMPLE_HEAD)
-    for column in table.columns[1:]:
-        column.justify = "right"
+    table = figures("", "min", "median", "95 %", box=SIMPLE_HEAD)
     for name, spread in benched.figures().items():
         row = (f"{value:.2f}".rstrip("0").rstrip(".") for value in (spread.minimum, spread.median, spread.high))
         table.add_row(name.replace("_", " "), *row)

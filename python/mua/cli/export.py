@@ -5,10 +5,11 @@ from typing import Annotated
 
 import typer
 
+from mua.arguments import listed
 from mua.cli.choice import choice
 from mua.cli.failure import run_command
 from mua.errors import InputError
-from mua.export.kinds import ENDINGS, SPLATS, WHATS, is_directory, kind_of, listed
+from mua.export.kinds import ENDINGS, SPLATS, WHATS, is_directory, kind_of
 from mua.files.inputs import require_file, require_motion
 from mua.files.write import require_writable
 

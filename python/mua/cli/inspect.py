@@ -10,7 +10,7 @@ from rich.table import Table
 
 from mua.asset.read import decode_tree, load
 from mua.asset.summary import summary
-from mua.cli.console import printer
+from mua.cli.console import figures, printer
 from mua.cli.failure import run_command
 from mua.errors import InputError
 from mua.files.inputs import require_file
@@ -76,9 +76,7 @@ def _whole(held: dict[str, Any]) -> Table:
 
 def _bytes(held: dict[str, Any]) -> Table:
     unpacked = held["unpacked_bytes_by_part"] if held["storage"] == "packed" else {}
-    table = Table("part", "bytes", *(["unpacked"] if unpacked else []), title=f"{held['bytes'] / 1e6:.2f} MB")
-    for column in table.columns[1:]:
-        column.justify = "right"
+    table = figures("part", "bytes", *(["unpacked"] if unpacked else []), title=f"{held['bytes'] / 1e6:.2f} MB")
     for part, size in held["bytes_by_part"].items():
         table.add_row(part, f"{size:,}", *([f"{unpacked[part]:,}"] if unpacked else []))
     return table
@@ -87,11 +85,9 @@ def _bytes(held: dict[str, Any]) -> Table:
 def _costs(held: dict[str, Any]) -> Table:
     kept, spent = held["parameters"], held["flops_per_frame"]
     total, cost = sum(kept.values()), sum(spent.values())
-    table = Table(
+    table = figures(
         "part", "parameters", "MFLOPs a frame", title=f"{total / 1e6:.2f} M parameters, {cost / 1e9:.3f} GFLOPs"
     )
-    for column in table.columns[1:]:
-        column.justify = "right"
     for name in dict.fromkeys([*kept, *spent]):
         shown = f"{kept[name]:,}" if name in kept else ""
         table.add_row(name, shown, f"{spent[name] / 1e6:.1f}" if name in spent else "")
@@ -101,9 +97,7 @@ def _costs(held: dict[str, Any]) -> Table:
 def _clips(held: dict[str, Any]) -> Table | str:
     if not held["clips"]:
         return "It holds no clips."
-    table = Table("clip", "frames", "a second", "seconds")
-    for column in table.columns[1:]:
-        column.justify = "right"
+    table = figures("clip", "frames", "a second", "seconds")
     for clip in held["clips"]:
         table.add_row(escape(clip["name"]), str(clip["frames"]), f"{clip['rate']:g}", f"{clip['seconds']:.1f}")
     return table

@@ -1,9 +1,9 @@
 """Parses the values of options: screens, frames, azimuths, colours, names of files."""
 
 import math
-from collections.abc import Sequence
 from pathlib import Path
 
+from mua.arguments import listed
 from mua.errors import InputError
 from mua.live.receiver import LOOPBACK, Address
 from mua.player.levels import AUTO, FULL
@@ -133,8 +133,3 @@ def require_format(output: Path) -> None:
         raise InputError(
             f"-o is {output}; expected a name that ends like an image, such as .png, or in {listed(VIDEOS)}"
         )
-
-
-def listed(words: Sequence[str]) -> str:
-    """Join words as in a sentence: a, b or c."""
-    return " or ".join(part for part in (", ".join(words[:-1]), words[-1]) if part)

@@ -5,12 +5,12 @@ from dataclasses import KW_ONLY, dataclass
 from pathlib import Path
 from typing import Annotated, Literal
 
+from mua.arguments import listed
 from mua.avatar.camera import EYE_DISTANCE
 from mua.cli.option_values import (
     EVEN,
     VIDEOS,
     is_video,
-    listed,
     parse_angle,
     parse_color,
     parse_expressions,

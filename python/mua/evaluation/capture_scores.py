@@ -4,7 +4,7 @@ Over white and inside the box around the mask; PSNR over all pixels and colours,
 """
 
 from collections.abc import Callable, Collection, Iterator, Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -170,12 +170,8 @@ def judge(
 @torch.no_grad()
 def drawn(splats: Splats, camera: Camera) -> Array:
     """Splats over white [H, W, 3], in 0..1."""
-    named = {field.name: getattr(splats, field.name, None) for field in fields(TorchSplats)}
-    named["turns"] = splats.texel_dq[:, :4]
-    tensors = {name: torch.from_numpy(np.asarray(of, np.float32)) for name, of in named.items() if of is not None}
-    posed = TorchSplats(**tensors)
     box = torch.from_numpy(np.asarray(splats.bounds, np.float32))
-    return np.asarray(rasterise(posed, Eye.of(camera, box), box, background=torch.ones(3)).clamp(0, 1))
+    return np.asarray(rasterise(TorchSplats.of(splats), Eye.of(camera, box), box, background=torch.ones(3)).clamp(0, 1))
 
 
 def mean_of(judged: Sequence[Judged], name: str, split: str) -> Scores:

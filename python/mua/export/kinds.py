@@ -1,9 +1,9 @@
 """The kinds of exported files: their endings and what they hold."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from mua.arguments import listed
 from mua.errors import InputError
 
 SPLATS, MESH, GEOMETRY, SKELETON = "splats", "mesh", "geometry", "skeleton"
@@ -60,8 +60,3 @@ def suffix_of(output: Path) -> str:
 def is_directory(output: Path) -> bool:
     """Whether frames are to be written into a directory of that name."""
     return output.is_dir() or not output.suffix
-
-
-def listed(words: Sequence[str]) -> str:
-    """Join words as in a sentence: a, b or c."""
-    return " or ".join(part for part in (", ".join(words[:-1]), words[-1]) if part)

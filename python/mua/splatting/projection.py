@@ -3,11 +3,14 @@
 Gradients reach everything, the camera's matrices as well; which splats are seen, and their order, are taken as fixed.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from typing import Any
 
+import numpy as np
 import torch
 
 from mua.avatar.camera import Camera
+from mua.avatar.decode import Splats
 from mua.channels import SH_C0, SH_C1
 from mua.kernels.splat_draw import WEIGHT
 from mua.kernels.splat_project import AWAY, GUARD, LAST_KEY, LEAST_OPACITY, LEAST_VARIANCE, PIXEL_VARIANCE, REACH
@@ -24,6 +27,16 @@ class TorchSplats:
     sh: torch.Tensor  # [N, 12] degree 1, coefficient-major
     turns: torch.Tensor  # [N, 4] from the space of the SH to the world, unit
     normals: torch.Tensor | None = None  # [N, 3] of the triangles of one-sided texels, 0 of others; None: draw all
+
+    @classmethod
+    def of(
+        cls, splats: Splats, dtype: torch.dtype = torch.float32, device: torch.device | str = "cpu"
+    ) -> "TorchSplats":
+        """The same splats as tensors."""
+        given: dict[str, Any] = {one.name: getattr(splats, one.name, None) for one in fields(cls)}
+        given["turns"] = splats.texel_dq[:, :4]
+        held = {name: np.ascontiguousarray(values) for name, values in given.items() if values is not None}
+        return cls(**{name: torch.as_tensor(values, dtype=dtype, device=device) for name, values in held.items()})
 
 
 @dataclass(frozen=True, eq=False)
