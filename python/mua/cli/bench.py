@@ -15,10 +15,10 @@ from rich.text import Text
 from mua.asset.write import write
 from mua.avatar.camera import EYE_DISTANCE
 from mua.bench.devices import DEVICES, model_device
-from mua.cli.choice import choice
 from mua.cli.console import printer
 from mua.cli.failure import run_command
 from mua.cli.option_values import parse_screen
+from mua.cli.options import choice
 from mua.errors import InputError
 from mua.files import write as files
 from mua.files.inputs import require_file

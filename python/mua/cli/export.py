@@ -6,8 +6,8 @@ from typing import Annotated
 import typer
 
 from mua.arguments import listed
-from mua.cli.choice import choice
 from mua.cli.failure import run_command
+from mua.cli.options import choice
 from mua.errors import InputError
 from mua.export.kinds import ENDINGS, SPLATS, WHATS, is_directory, kind_of
 from mua.files.inputs import require_file, require_motion

@@ -1,4 +1,4 @@
-"""The two options that every command has, --version and --quiet, and options that are a function's arguments."""
+"""The two options that every command has, --version and --quiet; those that are a function's arguments; choices."""
 
 import functools
 import inspect
@@ -11,7 +11,6 @@ from typing import Annotated, Any, get_args, get_origin
 
 import typer
 
-from mua.cli.choice import choice
 from mua.option import Option, declared, takes_numbers, takes_path, takes_several
 from mua.version import __version__
 
@@ -136,3 +135,16 @@ def _silence() -> Iterator[None]:
     """Nothing that is printed inside is seen; an error that leaves is printed outside."""
     with Path(os.devnull).open("w") as nowhere, redirect_stdout(nowhere), redirect_stderr(nowhere):
         yield
+
+
+def choice(names: Sequence[str], *flags: str, help: str, several: bool = False) -> Any:
+    """An option whose value is one of `names`; where it may come several times, its help lists them."""
+    listing = f"{help}: {', '.join(names)}." if several else help
+    metavar = "NAME" if several else f"<{'|'.join(names)}>"
+    return typer.Option(
+        *flags, metavar=metavar, help=listing, autocompletion=lambda incomplete: _begun(names, incomplete)
+    )
+
+
+def _begun(names: Sequence[str], incomplete: str) -> list[str]:
+    return [name for name in names if name.startswith(incomplete)]

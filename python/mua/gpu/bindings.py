@@ -9,9 +9,9 @@ import wgpu
 from mua.errors import InputError
 from mua.gpu import constants
 from mua.gpu.buffer import Buffer
+from mua.gpu.constants import Uniforms
 from mua.gpu.failure import naming
 from mua.gpu.reflect import BufferSlot, Interface
-from mua.gpu.uniforms import Uniforms
 
 MOST_BUFFERS = 8  # buffers that one stage may bind on every device that Unity runs on
 

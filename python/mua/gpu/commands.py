@@ -10,10 +10,10 @@ import wgpu
 
 from mua.errors import InputError
 from mua.gpu.buffer import Buffer
+from mua.gpu.constants import Uniforms
 from mua.gpu.failure import naming
 from mua.gpu.kernel import Kernel
 from mua.gpu.timestamps import Timestamps
-from mua.gpu.uniforms import Uniforms
 
 
 @dataclass(frozen=True)

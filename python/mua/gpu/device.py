@@ -11,10 +11,10 @@ from mua.gpu.adapters import Adapter, choose
 from mua.gpu.bindings import MOST_BUFFERS
 from mua.gpu.buffer import Buffer
 from mua.gpu.commands import Commands
+from mua.gpu.constants import Uniforms
 from mua.gpu.draw import Pipeline
 from mua.gpu.failure import naming
 from mua.gpu.kernel import Kernel
-from mua.gpu.uniforms import Uniforms
 
 # Limits requested beyond WebGPU's defaults: as much as the device has.
 RAISED_LIMITS = ("max-buffer-size", "max-storage-buffer-binding-size", "max-texture-dimension-2d")

@@ -7,9 +7,9 @@ import wgpu
 
 from mua.gpu.bindings import Bindings, check_names
 from mua.gpu.buffer import Buffer
+from mua.gpu.constants import Uniforms
 from mua.gpu.failure import naming
 from mua.gpu.reflect import reflect
-from mua.gpu.uniforms import Uniforms
 
 OVER = {"src_factor": "one", "dst_factor": "one-minus-src-alpha", "operation": "add"}  # premultiplied colour
 

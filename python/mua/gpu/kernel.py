@@ -8,9 +8,9 @@ import wgpu
 from mua.errors import InputError
 from mua.gpu.bindings import Bindings, check_names
 from mua.gpu.buffer import Buffer
+from mua.gpu.constants import Uniforms
 from mua.gpu.failure import naming
 from mua.gpu.reflect import BufferSlot, Constant, reflect
-from mua.gpu.uniforms import Uniforms
 
 MOST_GROUPS = 65535  # groups along one axis that every device allows
 
