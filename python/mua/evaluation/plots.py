@@ -48,7 +48,7 @@ def error_by_frame(results: Sequence[Result]) -> bytes:
     panels[0].set_ylabel("PSNR, dB")
     handles, labels = panels[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside right center", fontsize=8)
-    return _png(figure)
+    return png(figure)
 
 
 def rate_distortion(results: Sequence[Result]) -> bytes:
@@ -63,12 +63,17 @@ def rate_distortion(results: Sequence[Result]) -> bytes:
         points = [_scatter(panel, results, cost, held_out) for panel, cost in zip(row, costs.values(), strict=True)]
         for panel, unit, own in zip(row, costs, points, strict=True):
             _label(panel, own)
-            panel.set(title=f"{kind} poses", xlabel=unit, ylabel="PSNR, dB")
-            panel.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
-            panel.xaxis.set_major_formatter("{x:g}")
-            panel.xaxis.set_minor_formatter(NullFormatter())
-            panel.grid(alpha=0.3, which="both")
-    return _png(figure)
+            against_cost(panel, f"{kind} poses", unit)
+    return png(figure)
+
+
+def against_cost(panel: Axes, title: str, unit: str) -> None:
+    """Axes of PSNR over a cost, on a logarithm."""
+    panel.set(title=title, xlabel=unit, ylabel="PSNR, dB", xscale="log")
+    panel.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    panel.xaxis.set_major_formatter("{x:g}")
+    panel.xaxis.set_minor_formatter(NullFormatter())
+    panel.grid(alpha=0.3, which="both")
 
 
 def contact_sheet(studio: Studio, frames: Sequence[WholeFrame], results: Sequence[Result]) -> Image.Image:
@@ -226,7 +231,8 @@ def _colours(count: int) -> list[Colour]:
     return [palette(i % palette.N) for i in range(count)]
 
 
-def _png(figure: Figure) -> bytes:
+def png(figure: Figure) -> bytes:
+    """The bytes of a file, the same for the same figure."""
     stream = io.BytesIO()
     figure.savefig(stream, format="png", dpi=DPI, metadata={"Software": None})
     return stream.getvalue()

@@ -1,17 +1,15 @@
 """The curve of a comparison with images: PSNR of every system at every size against what it costs."""
 
-import io
 from collections.abc import Callable, Sequence
 
 import matplotlib
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import LogLocator, NullFormatter
 
 from mua.evaluation.capture_scores import SPLITS, TEACHER, FilmedEntry, Judged, mean_of
+from mua.evaluation.plots import against_cost, png
 from mua.evaluation.settings import OURS, SYSTEM_NAMES
 
-DPI = 120
 COSTS: dict[str, Callable[[FilmedEntry], float]] = {
     "million parameters": lambda entry: (entry.cost.parameters or 0) / 1e6,
     "million operations a frame": lambda entry: (entry.cost.flops or 0) / 1e6,
@@ -27,16 +25,10 @@ def curve(judged: Sequence[Judged], entries: Sequence[FilmedEntry]) -> bytes:
     for row, split in zip(panels, splits, strict=True):
         for panel, (unit, cost) in zip(row, COSTS.items(), strict=True):
             _lines(panel, judged, entries, split=split, cost=cost)
-            panel.set(title=split, xlabel=unit, ylabel="PSNR, dB", xscale="log")
-            panel.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
-            panel.xaxis.set_major_formatter("{x:g}")
-            panel.xaxis.set_minor_formatter(NullFormatter())
-            panel.grid(alpha=0.3, which="both")
+            against_cost(panel, split, unit)
     handles, labels = panels[0][0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=5, fontsize=9)
-    stream = io.BytesIO()
-    figure.savefig(stream, format="png", dpi=DPI, metadata={"Software": None})
-    return stream.getvalue()
+    return png(figure)
 
 
 def points(
