@@ -8,7 +8,10 @@ import numpy as np
 import pytest
 from commands import Commands
 
-from mua.bench.counts import Counts, Drawn, Part
+from mua.avatar.decode_turns import LONGEST, PARTS
+from mua.avatar.frame_budget import MILLISECONDS
+from mua.bench.counts import Counts, Drawn, LevelCounts, Part
+from mua.bench.crowd import DISPLAYED, crowd
 from mua.bench.devices import DEVICES, ModelDevice, Range, model_device
 from mua.bench.frame_model import BLOCK_CORNER, BLOCK_EDGE, FIXED, Modelled, model, shaded
 from mua.bench.instructions import count_instructions
@@ -28,6 +31,19 @@ def counts(fragments: int = 4_000) -> Counts:
     decode = tuple(Part({"BlendLl": Work(1_000 * kilo, 1_000 * kilo)}, 6) for kilo in (100, 300, 450, 150))
     pose = Part({**dict.fromkeys(POSING, Work(0, 0)), "SplatProject": Work(500_000, 3_000_000)}, 8)
     return Counts("a", 50_000, 20_000, 1_000, decode, pose, 7, (Drawn(1.0, 2_000, fragments, 10.0),))
+
+
+def leveled() -> Counts:
+    """The same with a level of a quarter of the splats, chosen from 4 metres on."""
+    whole = counts()
+    (drawn,) = whole.drawn
+    pose = Part({**whole.pose.kernels, "SplatProject": Work(125_000, 750_000)}, 8)
+    coarser = replace(drawn, triangles=500, fragments=2_000)
+    levels = (
+        LevelCounts(64, 1_000, 0.0, whole.decode, whole.pose, drawn),
+        LevelCounts(32, 250, 4.0, whole.decode, pose, coarser),
+    )
+    return replace(whole, levels=levels)
 
 
 def only(modelled: list[Modelled], avatars: int, eyes: int) -> Modelled:
@@ -62,6 +78,31 @@ def test_avatars_and_eyes_add_up_but_for_decodes_which_take_turns() -> None:
     assert (three.decode, three.part) == pytest.approx((3 * one.decode, 0.45))  # the longest part of one decode
     assert (three.pose, three.fragments) == pytest.approx((3 * both.pose, 3 * both.fragments))
     assert three.rest == one.rest
+
+
+def test_avatars_that_take_turns_have_one_part_in_their_longest_frame() -> None:
+    seen = crowd(ROUND, leveled(), INSTRUCTIONS, (1.0, 1.0, 1.0))
+    three = only(model(ROUND, leveled(), INSTRUCTIONS), 3, 2).likely
+    assert seen.together == pytest.approx(three.plain + 3 * 0.6)
+    assert seen.turns.longest == pytest.approx(three.plain + 0.45)
+    assert (seen.turns.parts, seen.turns.splats) == (1, 3_000)
+    assert 0 < seen.turns.oldest < 1e3 * (max(LONGEST, 3 * PARTS) + 2 * PARTS) / DISPLAYED
+
+
+def test_avatars_far_away_are_coarser_and_their_fragments_fewer() -> None:
+    near, far = (crowd(ROUND, leveled(), INSTRUCTIONS, (away,) * 2).turns for away in (1.0, 8.0))
+    assert (near.splats, far.splats) == (2_000, 500)
+    assert far.longest < near.longest
+
+
+def test_a_budget_leaves_out_splats_until_a_frame_is_in_time() -> None:
+    seen = crowd(ROUND, leveled(), INSTRUCTIONS, (1.0,) * 2)
+    assert seen.turns.longest > MILLISECONDS
+    assert seen.budget.longest <= MILLISECONDS
+    assert seen.budget.splats < seen.turns.splats
+    quick = crowd(replace(ROUND, bandwidth=1e3, peak=10, clock=1), leveled(), INSTRUCTIONS, (1.0,) * 3)
+    assert (quick.budget.splats, quick.budget.oldest) == (3_000, 0)
+    assert quick.budget.parts > PARTS
 
 
 def test_blocks_of_pixels_are_those_that_squares_touch() -> None:
@@ -127,7 +168,7 @@ def test_prints_the_model_beside_what_is_measured(
     time = Timing(1.25, 1, 2)
     kernels = dict.fromkeys(("BlendLl", *POSING), time)
     here = Measured("my device", "a", 1_000, 1_000, (64, 64), 1, 1, 1e9, kernels, counts().kernels, time)
-    monkeypatch.setattr(importlib.import_module("mua.bench.counts"), "count", lambda *_: counts())
+    monkeypatch.setattr(importlib.import_module("mua.bench.counts"), "count", lambda *_: leveled())
     monkeypatch.setattr(importlib.import_module("mua.bench.measure"), "measure", lambda *_, **__: here)
     monkeypatch.setenv("COLUMNS", "160")
     output = tmp_path / "model.json"
@@ -135,7 +176,9 @@ def test_prints_the_model_beside_what_is_measured(
     assert ran.status == 0, ran.err
     assert "Measured on my device: decode 1.2 ms, pose 6.2 ms, drawing 1.2 ms" in ran.out
     assert "modelled from counts, not measured" in ran.out
+    assert "in turns, budget" in ran.out
     assert '"decode_frame"' in output.read_text()
+    assert '"crowds"' in output.read_text()
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""What avatars of the smallest and the largest preset cost, beside what it cost when somebody last looked.
+"""What an avatar of each preset costs, beside what it cost when somebody last looked.
 
 Where a change means to move these figures, write them anew and say in its message why:
 
@@ -28,7 +28,7 @@ ROUNDED = 0.01  # of a count that depends on which splats a device finds in view
 
 
 @pytest.mark.parametrize(
-    "name", ["tiny", *(pytest.param(name, marks=pytest.mark.long) for name in ("paper", "paper_sizes"))]
+    "name", ["tiny", "preview", *(pytest.param(name, marks=pytest.mark.long) for name in ("paper", "paper_sizes"))]
 )
 def test_an_avatar_costs_what_it_did(device: Device, name: str, tmp_path: Path) -> None:
     kept = json.loads((KEPT / f"{name}.json").read_text())

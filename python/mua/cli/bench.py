@@ -150,20 +150,22 @@ def _levels(counted: "Counts") -> Table:
 def _model(device: "Device", path: Path, name: str, frames: int, output: Path | None) -> None:
     """Print what a frame would take elsewhere, and what it takes here."""
     from mua.bench.counts import count
+    from mua.bench.crowd import SCENES, crowd
     from mua.bench.frame_model import model
     from mua.bench.instructions import fragment_instructions
     from mua.bench.measure import measure
-    from mua.cli.model_table import measured_line, model_json, model_legend, model_table
+    from mua.cli.model_table import crowd_table, measured_line, model_json, model_legend, model_table
 
     chosen, instructions = model_device(name), fragment_instructions()
     counted = count(device, path)
     modelled = model(chosen, counted, instructions)
+    crowds = [crowd(chosen, counted, instructions, metres) for metres in SCENES]
     measured = measure(device, path, frames=frames, screen=parse_screen(SIZE), eyes=None)
     if output is not None:
-        figures = model_json(name, chosen, instructions, modelled, measured)
+        figures = model_json(name, chosen, instructions, modelled, measured, crowds)
         files.write_bytes(output, json.dumps(figures, indent=2).encode() + b"\n")
     legend = (*model_legend(chosen, instructions), measured_line(measured))
-    for part in (model_table(modelled), *map(Text, legend)):
+    for part in (model_table(modelled), crowd_table(crowds), *map(Text, legend)):
         printer().print(part)
 
 

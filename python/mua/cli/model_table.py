@@ -6,6 +6,7 @@ from typing import Any
 from rich.box import SIMPLE_HEAD
 from rich.table import Table
 
+from mua.bench.crowd import Crowd
 from mua.bench.devices import ModelDevice
 from mua.bench.frame_model import Modelled, Stages
 from mua.bench.measure import Measured
@@ -39,9 +40,23 @@ def model_table(modelled: list[Modelled]) -> Table:
     return table
 
 
+def crowd_table(crowds: list[Crowd]) -> Table:
+    """The longest frame of several avatars, in milliseconds, and how old what is shown becomes."""
+    titles = ("metres of each", "decode", "longest frame", "parts", "splats", "oldest")
+    table = Table(*titles, box=SIMPLE_HEAD, padding=(0, 0, 0, 1))
+    for each in crowds:
+        table.add_row(", ".join(f"{away:g}" for away in each.metres), "together", f"{each.together:.1f}")
+        for name, played in (("in turns", each.turns), ("in turns, budget", each.budget)):
+            figures = (str(played.parts), f"{played.splats:,}", f"{played.oldest:.0f}")
+            table.add_row("", name, f"{played.longest:.1f}", *figures)
+    return table
+
+
 def model_legend(device: ModelDevice, instructions: int) -> tuple[str, ...]:
     return (
         f"Milliseconds on {device.title}: modelled from counts, not measured; in brackets best to worst.",
+        "together: all decode half in one frame; in turns: one part of one decode; budget: as many parts and splats as "
+        "fit 13.9 ms. oldest: milliseconds by which a shown decode is behind its pose.",
         f"A fragment computes {instructions} instructions. No avatar hides another; both eyes are drawn one by one.",
         *device.sources,
         f"Assumed, without a source: {device.assumed}.",
@@ -71,6 +86,7 @@ def model_json(
     instructions: int,
     modelled: list[Modelled],
     measured: Measured,
+    crowds: list[Crowd],
 ) -> dict[str, Any]:
     """Milliseconds."""
     return {
@@ -86,6 +102,7 @@ def model_json(
             }
             for each in modelled
         ],
+        "crowds": [asdict(each) for each in crowds],
         "measured": {"device": measured.device, **measured_stages(measured)},
     }
 
