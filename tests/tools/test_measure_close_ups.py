@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import still_splats
 from measure_close_ups import main, measured, moments, surface_of, unlit
 from PIL import Image
 from shared_data import SharedData
@@ -71,6 +72,19 @@ def test_writes_each_part_from_each_side(
     front = next(line for line in capsys.readouterr().out.splitlines() if f", {parts[0]}, front: " in line)
     psnr, bound = (float(text.split()[-1]) for text in front.split(" dB")[:2])
     assert 15 < psnr < bound
+
+
+def test_splats_that_were_kept_are_drawn_and_measured_before_those_of_now(
+    shared_data: SharedData, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    character, before = str(shared_data.path("characters/lumberjack.glb")), str(tmp_path / "before")
+    still_splats.main([character, "--texels", "64", "-o", before])
+    main([character, "--texels", "64", "--size", "96", "--steps", "0", "--before", before, "-o", str(tmp_path)])
+    _, kept, now = np.split(np.asarray(Image.open(next(tmp_path.glob("*.png")))), 3, axis=1)
+    assert np.array_equal(kept, now)
+    kept_psnr, arrow, psnr = capsys.readouterr().out.split("front: ")[1].split()[:3]
+    assert arrow == "->"
+    assert float(kept_psnr) == float(psnr) > 15
 
 
 def test_a_student_is_compared_in_the_colours_of_the_splats(shared_data: SharedData) -> None:

@@ -2,6 +2,7 @@
 
 python tools/research/measure_close_ups.py hero.glb witch.vrm --texels 256 -o close_ups/
 python tools/research/measure_close_ups.py hero.glb --avatar hero.muaavatar --motion kicks/ -o close_ups/
+python tools/research/measure_close_ups.py hero.glb --before before/ -o close_ups/
 
 Both are drawn without light, from the front and from behind, so that the part fills the image: as the file stands, or
 in the last frame and the middle one of every motion. An avatar that was baked from the character is drawn beside them
@@ -13,6 +14,8 @@ surface. FLIP is the mean over the same pixels, of which --per-degree lie along 
 share of pixels within FRINGE outside the source's silhouette that are darker than both the nearest pixel of the source
 and the background: a fringe. The bounds, after "of", are those of the surface itself under its atlas averaged to so
 many texels. The splats are fitted to the source first, in poses of the built-in range of motion, as a bake fits them.
+With --before the splats that still_splats.py kept of another commit are drawn next to the source, and their figures
+come first.
 
 With --hanging the source is its surface as loose parts hang in the simulated teacher, under the character's atlas, and
 the splats lie on it: cloth that hangs beside where the file's joints have it then is no fringe.
@@ -20,7 +23,7 @@ the splats lie on it: cloth that hangs beside where the file's joints have it th
 
 import argparse
 from collections.abc import Iterator, Sequence
-from dataclasses import astuple, dataclass
+from dataclasses import astuple, dataclass, fields
 from itertools import islice
 from pathlib import Path
 
@@ -180,6 +183,12 @@ def as_textured(character: Character, texels: int) -> tuple[list[Part], list[Mat
     return [part], [Material("atlas", reduced(character.base_color, len(character.base_color) // texels))]
 
 
+def kept_splats(file: Path) -> Splats:
+    """What still_splats.py wrote."""
+    with np.load(file) as kept:
+        return Splats(**{field.name: kept[field.name] for field in fields(Splats) if field.name in kept})
+
+
 def unlit(student: Splats, teacher: StillTeacher, texture: Array, moment: Moment) -> Splats:
     """A student's splats in the colours of this texture [N, 23]."""
     own = student.texture.copy()
@@ -193,6 +202,7 @@ def close_ups(
     texels: int,
     size: int,
     steps: int,
+    before: Path | None,
     avatar: Avatar | None,
     fit: Path | None,
     motion: Sequence[Path],
@@ -221,7 +231,8 @@ def close_ups(
         for moment, clip, at in moments(character, motion):
             surface = surface_of(character, moment, clip, at, hanging=hanging)
             shown, places = teacher.frame_on(moment.pose, surface), surface.places
-            frames = {"now": pose_splats(teacher.rig, shown.mesh, texture=shown.texture, pose=moment.pose)}
+            frames = {} if before is None else {"before": kept_splats(before / f"{path.stem}.npz")}
+            frames["now"] = pose_splats(teacher.rig, shown.mesh, texture=shown.texture, pose=moment.pose)
             if avatar is not None:
                 frames["avatar"] = decode_clip_frame(avatar, clip, frame=at)
                 frames["unlit"] = unlit(frames["avatar"], teacher, shown.texture, moment)
@@ -250,6 +261,7 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--texels", type=int, default=256)
     parser.add_argument("--size", type=int, default=1080, help="pixels along a side of an image")
     parser.add_argument("--steps", type=int, default=fitting.STEPS, help="of the fit to the source; 0: none")
+    parser.add_argument("--before", type=Path, help="a folder of still_splats.py, to be drawn and measured beside it")
     parser.add_argument("--avatar", type=Path, help="what was baked from the one character, to be drawn beside it")
     parser.add_argument("--fit", type=Path, help="corrections that the bake of --avatar kept, in place of a fit")
     parser.add_argument("--motion", type=Path, nargs="+", default=[], help="motion files to pose the characters by")
@@ -258,6 +270,8 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("-o", "--output", type=Path, required=True)
     options = parser.parse_args(arguments)
     options.output.mkdir(parents=True, exist_ok=True)
+    if options.before and options.motion:
+        parser.error("--before keeps splats of the file as it stands: leave out --motion")
     avatar = options.avatar and read(options.avatar)
     for path in options.characters:
         found: dict[str, list[tuple[float, ...]]] = {}
@@ -266,6 +280,7 @@ def main(arguments: list[str] | None = None) -> None:
             texels=options.texels,
             size=options.size,
             steps=options.steps,
+            before=options.before,
             avatar=avatar,
             fit=options.fit,
             motion=options.motion,
@@ -283,7 +298,7 @@ def main(arguments: list[str] | None = None) -> None:
 
 
 def _line(name: str, figures: dict[str, Figures]) -> str:
-    shown = [figures[which] for which in ("now", "unlit") if which in figures]
+    shown = [figures[which] for which in ("before", "now", "unlit") if which in figures]
 
     def each(field: str, form: str) -> str:
         return " -> ".join(format(getattr(one, field), form) for one in shown)
