@@ -22,7 +22,8 @@ def numbered_files(folder: Path) -> list[Path]:
     for file in sorted(folder.iterdir()):
         if file.suffix.lower() in PICTURES and NUMBER.search(file.stem):
             series.setdefault(_split(file)[0], []).append(file)
-    return sorted(max(series.values(), key=len, default=[]), key=number_of)
+    longest = max(series.values(), key=lambda files: len(files), default=[])
+    return sorted(longest, key=number_of)
 
 
 def numbered_pattern(
