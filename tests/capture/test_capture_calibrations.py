@@ -420,7 +420,7 @@ def test_pictures_are_found_by_the_names_of_data_sets(
     line = ("describe", source, "-o", tmp_path / "out")
     ask = command("capture", *line).sentence
     assert f"with --calibration {source / 'calibration.csv'}, the person with --template" in ask
-    ended = command("capture", *line, *given, "--calibration", source / "calibration.csv")
+    ended = command("capture", *line, *given, "--calibration", source)
     assert "2 cameras, 3 frames in 1 clips" in ended.out, ended
     view = open_capture(tmp_path / "out").view("all", 2, NAMES[1])
     assert (view.mask == 1).all()

@@ -8,6 +8,7 @@ from mua.files.signature import refuse_foreign, require_kind
 
 SUFFIXES = (".bvh", ".npz", *ANIMATIONS)
 
+FACES = (".csv", ".json")  # of a face alone: Live Link Face, Audio2Face
 SAVE_NPZ = (
     "save its poses (or global_orient and body_pose), trans and mocap_framerate with numpy.savez, and give that .npz"
 )
@@ -88,5 +89,5 @@ def require_face(face: Path) -> None:
     """Raises InputError for a file that is not there or of a format that holds no face."""
     if not face.is_file():
         raise InputError(f"--face {face}: there is no such file")
-    if face.suffix.lower() != ".csv":
+    if face.suffix.lower() not in FACES:
         require_format(face)

@@ -28,6 +28,8 @@ def read_cameras(path: Path) -> tuple[Calibrated, ...]:
         return read_easymocap(folder)
     if is_colmap(folder):
         return read_colmap(folder)
+    if path.is_dir() and (found := calibration_in(path)):
+        return read_cameras(found)
     refuse_others(path)
     raise InputError(
         f"{path}: is no calibration that is read; expected a .toml of Pose2Sim, Caliscope or anipose, calibration.csv "
