@@ -1,4 +1,4 @@
-"""Facial motion: of Live Link Face and Audio2Face, of poses with a face, and weights on a character's own expressions."""
+"""Facial motion: of Live Link Face, Audio2Face and poses with a face, and weights on a character's own expressions."""
 
 import json
 from pathlib import Path
