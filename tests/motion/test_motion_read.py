@@ -43,7 +43,7 @@ def test_refuses_what_holds_no_motion(tmp_path: Path, name: str, says: str) -> N
         ("a.json", "mua-capture poses makes an .npz"),
         ("a.tak", "export it from OptiTrack Motive"),
         ("a.mov", "estimate the person's poses"),
-        ("a.uasset", "export it from Unreal Engine"),
+        ("a.anim", "export it from Unity"),
     ],
 )
 def test_says_how_to_convert_motion_of_other_kinds(tmp_path: Path, name: str, says: str) -> None:

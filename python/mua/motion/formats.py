@@ -28,7 +28,6 @@ ADVICE = {  # for other kinds of motion files
     **dict.fromkeys((".x2d", ".vsk", ".mcp"), "export it from Vicon Shogun or Blade as FBX"),
     **dict.fromkeys((".mot", ".sto"), "export it from OpenSim as .trc, of which mua-capture poses makes an .npz"),
     **dict.fromkeys((".anim", ".unitypackage", ".prefab"), "export it from Unity as FBX"),
-    **dict.fromkeys((".uasset", ".psa", ".psk"), "export it from Unreal Engine as FBX or glTF"),
     ".bip": "load it on a Biped in 3ds Max and export that as FBX",
     ".duf": "export it from Daz Studio as FBX or BVH",
     **dict.fromkeys((".rbxm", ".rbxmx"), "export it from Roblox Studio by way of Blender as glTF"),

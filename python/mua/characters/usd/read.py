@@ -56,8 +56,8 @@ def _bare(stage: Usd.Stage, path: Path) -> Iterator[Scene]:
     loose = next((prim for prim in stage.Traverse(PREDICATE) if prim.IsA(UsdSkel.Animation)), None)
     if loose and not queries:
         raise InputError(
-            f"{path}: {loose.GetPath()}: no Skeleton is bound to this SkelAnimation; export it with its Skeleton, whose "
-            "skel:animationSource names it"
+            f"{path}: {loose.GetPath()}: no Skeleton is bound to this SkelAnimation; export it with its Skeleton, "
+            "whose skel:animationSource names it"
         )
     for query in queries:
         skeletons.append(read_bones(query, path, first=_node_count(skeletons)))
