@@ -42,8 +42,8 @@ class Figure:
 
 
 SWAPPED = (
-    "The {}'s joints called left are on its right, by how feet, knees and elbows point and where it goes; "
-    "left and right are exchanged."
+    "The {}'s joints called left are on its right, by how its body is built and how it moves; left and right are "
+    "exchanged."
 )
 
 
