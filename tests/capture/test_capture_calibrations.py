@@ -428,8 +428,9 @@ def test_pictures_are_found_by_the_names_of_data_sets(
 
 
 def test_a_data_set_that_is_not_read_says_the_way_out(command: Commands, tmp_path: Path) -> None:
-    (tmp_path / "annots.npy").touch()
-    assert "looks like ZJU-MoCap's" in command("capture", "describe", tmp_path, "-o", tmp_path / "out").sentence
+    (tmp_path / "Capture").mkdir()
+    (tmp_path / "Capture" / "cameras.pkl").touch()
+    assert "looks like 4D-Dress's" in command("capture", "describe", tmp_path, "-o", tmp_path / "out").sentence
     assert "capture.json, which mua-capture describe writes" in command("capture", "check", tmp_path).sentence
 
 

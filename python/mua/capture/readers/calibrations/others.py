@@ -29,6 +29,6 @@ PROGRAMS = (
 def refuse_others(path: Path) -> None:
     """Raises InputError, which says the way out, for another program's file, or for the folder of a data set."""
     for pattern, maker, advice in DATA_SETS if path.is_dir() else (*DATA_SETS, *PROGRAMS):
-        found = next(iter(sorted(path.glob(pattern))), None) if path.is_dir() else path if path.match(pattern) else None
-        if found is not None:
-            raise InputError(f"{found}: looks like {maker}'s, which is not read; {advice}")
+        inside = sorted((*path.glob(pattern), *path.glob(f"*/{pattern}")))
+        if found := inside or [one for one in [path] if one.match(pattern)]:
+            raise InputError(f"{found[0]}: looks like {maker}'s, which is not read; {advice}")
