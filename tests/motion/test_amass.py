@@ -128,7 +128,7 @@ def test_takes_vectors_by_joint_and_other_names_of_arrays(tmp_path: Path) -> Non
 def test_takes_rotation_matrices(tmp_path: Path) -> None:
     """As HMR 2.0 and others write them; also of half a turn and of none."""
     poses = np.random.default_rng(5).normal(size=(5, 24, 3))
-    poses[0, :2] = [[0, 0, 0], [np.pi, 0, 0]]
+    poses[0, :2] = np.array([[0, 0, 0], [np.pi, 0, 0]])
     matrices = Rotation.from_rotvec(poses.reshape(-1, 3)).as_matrix().reshape(5, 24, 3, 3)
     found = read_amass(write(tmp_path, poses=None, global_orient=matrices[:, :1], body_pose=matrices[:, 1:]))
     expected = read_amass(write(tmp_path, poses=poses.reshape(5, 72)))
