@@ -3,6 +3,7 @@
 import json
 import struct
 from dataclasses import replace
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -92,15 +93,41 @@ def colmap_binary(folder: Path) -> None:
     (folder / "images.bin").write_bytes(content)
 
 
+def actorshq() -> str:
+    """Shares of the image's sides; camera to world."""
+    rows = ["name,w,h,rx,ry,rz,tx,ty,tz,fx,fy,px,py"]
+    for name, matrix in zip(NAMES, MATRICES, strict=True):
+        places = np.linalg.inv(matrix)
+        shares = [61.0 / SIZE[0], 60.0 / SIZE[1], 19.7 / SIZE[0], 11.6 / SIZE[1]]
+        rows.append(",".join(map(str, [name, *SIZE, *vector(places), *places[:3, 3], *shares])))
+    return "\n".join(rows) + "\n"
+
+
+def transforms(**changed: object) -> str:
+    frames = [
+        {
+            "file_path": f"./images/{name}/000000.jpg",
+            "transform_matrix": (np.linalg.inv(matrix) @ np.diag([1, -1, -1, 1])).tolist(),
+        }
+        for name, matrix in zip(NAMES, MATRICES, strict=True)
+    ]
+    lens = dict(zip(("k1", "k2", "p1", "p2"), LENS, strict=True))
+    pixels = {"fl_x": 61.0, "fl_y": 60.0, "cx": 19.7, "cy": 11.6, "w": SIZE[0], "h": SIZE[1]}
+    return json.dumps({"camera_model": "OPENCV", **pixels, **lens, "frames": frames} | changed)
+
+
 def write(folder: Path, kind: str) -> Path:
     """A calibration of a kind; what is read of it."""
     texts = {
         "anipose": toml(),
         "caliscope": toml(head="cameras.{name}", vectors=False),
+        "actorshq": actorshq(),
+        "transforms": transforms(),
     }
     if kind in texts:
-        (folder / "Calib.toml").write_text(texts[kind])
-        return folder / "Calib.toml"
+        file = folder / {"actorshq": "calibration.csv", "transforms": "transforms.json"}.get(kind, "Calib.toml")
+        file.write_text(texts[kind])
+        return file
     if kind == "colmap binary":
         colmap_binary(folder)
     elif kind == "colmap":
@@ -110,7 +137,16 @@ def write(folder: Path, kind: str) -> Path:
     return folder
 
 
-KINDS = ("anipose", "caliscope", "easymocap", "easymocap without sizes", "colmap", "colmap binary")
+KINDS = (
+    "anipose",
+    "caliscope",
+    "actorshq",
+    "transforms",
+    "easymocap",
+    "easymocap without sizes",
+    "colmap",
+    "colmap binary",
+)
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -124,7 +160,7 @@ def test_cameras_see_points_where_the_formula_says(tmp_path: Path, kind: str) ->
         found, depth = pixels(camera, points)
         np.testing.assert_allclose(found, seen[:, :2] / seen[:, 2:] + 0.5, atol=ROUNDING)
         np.testing.assert_allclose(depth, seen[:, 2], atol=ROUNDING)
-        assert (camera.size, camera.distortion) == (SIZE, (*LENS, 0.0))
+        assert (camera.size, camera.distortion) == (SIZE, (0.0,) * 5 if kind == "actorshq" else (*LENS, 0.0))
         assert (one.size is None) == (kind == "easymocap without sizes")
 
 
@@ -251,6 +287,40 @@ def test_what_a_toml_cannot_say_is_named(tmp_path: Path, text: str, sentence: st
         read_cameras(tmp_path / "Calib.toml")
 
 
+@pytest.mark.parametrize(
+    ("name", "text", "sentence"),
+    [
+        ("calibration.csv", actorshq().splitlines()[0], "holds no camera"),
+        ("calibration.csv", actorshq().replace(",40,24,", ",40,x,"), "camera cam_01: w, h: expected 2 numbers"),
+        ("calibration.csv", "#cameras,5", "calibration.csv: looks like RealityCapture's, which is not read; export"),
+        ("transforms.json", "{", "transforms.json: cannot be read as JSON"),
+        ("transforms.json", transforms(frames=[]), "expected an object with a list of at least one of frames"),
+        ("transforms.json", transforms(camera_model="OPENCV_FISHEYE"), "or a fisheye; undistort the images first"),
+        ("transforms.json", transforms(fl_x=0), "cam_01/000000.jpg: the focal lengths are 0 and 60, expected above 0"),
+        ("transforms.json", transforms(fl_y="a"), "cam_01/000000.jpg: fl_y"),
+        ("transforms.json", transforms(k4=0.1), "the distortion has 6 coefficients"),
+        (
+            "transforms_train.json",
+            json.dumps({"camera_angle_x": 0.6, "frames": [{"file_path": "./train/r_0"}]}),
+            "no tr",
+        ),
+        (
+            "cameras.sfm",
+            "{}",
+            "looks like Meshroom's, which is not read; export COLMAP's .* with aliceVision_exportColmap",
+        ),
+        ("cameras.xml", "<document/>", "looks like Metashape's, which is not read; export COLMAP's"),
+        ("out.yml", "%YAML:1.0", "looks like OpenCV or numpy's, which is not read; write OpenCV's matrices"),
+        ("annots.npy", "", "looks like ZJU-MoCap's, which is not read; it is pickled, and opening it may run code"),
+        ("cameras.txt", "", "is no calibration that is read; expected a .toml"),
+    ],
+)
+def test_what_another_file_cannot_say_is_named(tmp_path: Path, name: str, text: str, sentence: str) -> None:
+    (tmp_path / name).write_text(text)
+    with pytest.raises(InputError, match=sentence):
+        read_cameras(tmp_path / name)
+
+
 def test_what_other_files_cannot_say_is_named(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="is no calibration that is read"):
         read_cameras(tmp_path)
@@ -327,6 +397,41 @@ def test_pictures_become_clips_without_those_that_a_camera_lacks(
     assert said["rate"] == 50
     image = open_capture(tmp_path / "out").view("frames_000007", 1, NAMES[0]).image
     assert image[SIZE[1] // 2, SIZE[0] // 2, 0] == pytest.approx(160 / 255, abs=0.01)
+
+
+@pytest.mark.parametrize(
+    ("images", "masks"),
+    [
+        ("rgbs/{0}/{0}_rgb{1:06d}.jpg", "masks/{0}/{0}_mask{1:06d}.png"),  # ActorsHQ
+        ("{0}/{1:06d}.jpg", "mask_cihp/{0}/{1:06d}.png"),  # ZJU-MoCap
+        ("images/{0}/capture-f{1:05d}.png", "masks/{0}/mask-f{1:05d}.png"),  # 4D-Dress
+    ],
+)
+def test_pictures_are_found_by_the_names_of_data_sets(
+    given: tuple[object, ...], command: Commands, tmp_path: Path, images: str, masks: str
+) -> None:
+    source = tmp_path / "anna"
+    for pattern in (images, masks):
+        for name, number in product(NAMES, range(11, 14)):
+            place = source / pattern.format(name, number)
+            place.parent.mkdir(parents=True, exist_ok=True)
+            Image.new("L", SIZE, 13).save(place)  # as a mask, the label of a part of the body
+    (source / "calibration.csv").write_text(actorshq())
+    line = ("describe", source, "-o", tmp_path / "out")
+    ask = command("capture", *line).sentence
+    assert f"with --calibration {source / 'calibration.csv'}, the person with --template" in ask
+    ended = command("capture", *line, *given, "--calibration", source)
+    assert "2 cameras, 3 frames in 1 clips" in ended.out, ended
+    view = open_capture(tmp_path / "out").view("all", 2, NAMES[1])
+    assert (view.mask == 1).all()
+    assert view.image.max() < 0.1
+
+
+def test_a_data_set_that_is_not_read_says_the_way_out(command: Commands, tmp_path: Path) -> None:
+    (tmp_path / "Capture").mkdir()
+    (tmp_path / "Capture" / "cameras.pkl").touch()
+    assert "looks like 4D-Dress's" in command("capture", "describe", tmp_path, "-o", tmp_path / "out").sentence
+    assert "capture.json, which mua-capture describe writes" in command("capture", "check", tmp_path).sentence
 
 
 def test_cameras_are_those_of_their_name_whatever_the_order_of_the_file(

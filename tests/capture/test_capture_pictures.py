@@ -31,6 +31,15 @@ def test_a_mask_that_is_painted_in_labels_covers_all_of_them(tmp_path: Path) -> 
     np.testing.assert_array_equal(read_mask(file, number=0, size=SIZE)[..., 0], [[0, 255, 255], [255, 0, 0]])
 
 
+@pytest.mark.parametrize("labels", [1, 20])
+@pytest.mark.parametrize("dtype", [np.uint8, np.uint16])
+def test_a_mask_of_numbers_covers_all_but_0(tmp_path: Path, dtype: type, labels: int) -> None:
+    """Human parsing (LIP, CIHP) writes the number of a part of the body, other tools 0 and 1."""
+    file = tmp_path / "mask.png"
+    Image.fromarray(np.array([[0, 1, 1], [labels, 0, 0]], dtype)).save(file)
+    np.testing.assert_array_equal(read_mask(file, number=0, size=SIZE)[..., 0], [[0, 255, 255], [255, 0, 0]])
+
+
 @pytest.mark.parametrize("mode", ["RGB", "RGBA", "P"])
 def test_colours_are_read_with_the_alpha_that_the_file_has(tmp_path: Path, mode: str) -> None:
     file, colours = tmp_path / "a.png", np.stack([GREY, GREY[:, ::-1], GREY // 2], axis=2)

@@ -184,9 +184,13 @@ def test_joints_without_a_bind_matrix_of_their_own_stay_where_they_rest(tmp_path
         np.testing.assert_allclose(place, places[name], atol=FLOAT_BOUND)
 
 
-def test_skin_without_bind_matrices_is_bound_at_rest(tmp_path: Path) -> None:
+@pytest.mark.parametrize("stated", [False, True])
+def test_skin_without_bind_matrices_is_bound_at_rest(tmp_path: Path, stated: bool) -> None:
+    """Or with matrices that are all the identity."""
     glb = rig(mesh=False)
     del glb.json["skins"][0]["inverseBindMatrices"]
+    if stated:
+        glb.json["skins"][0]["inverseBindMatrices"] = glb.accessor(np.tile(np.eye(4), (len(BONES), 1, 1)))
     bare, skinned = read(glb, tmp_path).skeleton, read(rig(), tmp_path).skeleton
     assert bare.names == skinned.names
     np.testing.assert_allclose(bare.bind_translations, skinned.bind_translations, atol=FLOAT_BOUND)

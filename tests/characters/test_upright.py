@@ -15,12 +15,16 @@ from mua.pose.joint_names import roles
 from mua.scene import Scene, Skin
 
 
-def whole(turn: Rotation, *, sitting: float = 0.0, bent: float = 0.0, rest: Rotation | None = None) -> Scene:
+def whole(
+    turn: Rotation, *, sitting: float = 0.0, bent: float = 0.0, rest: Rotation | None = None, stoops: float = 0.0
+) -> Scene:
     """A person turned as a whole, the thighs lifted by `sitting` degrees, forearms and shins bent to the front by
-    `bent`; at rest turned as `rest` says.
+    `bent`; at rest turned as `rest` says and the trunk bent to the front by `stoops`.
     """
     skeleton = person()
     _, places = skeleton.world(skeleton.bind_rotations, skeleton.bind_translations)
+    legs = [name.endswith(("Leg", "Foot", "ToeBase")) for name in skeleton.names]
+    bow = Rotation.from_euler("x", stoops, degrees=True)
     for side, inwards in (("Left", -bent), ("Right", bent)):
         for name, axis, degrees in (("UpLeg", "x", -sitting), ("Leg", "x", -bent), ("ForeArm", "y", inwards)):
             hinge = skeleton.names.index(f"{side}{name}")
@@ -28,7 +32,10 @@ def whole(turn: Rotation, *, sitting: float = 0.0, bent: float = 0.0, rest: Rota
                 if hinge in skeleton.ancestors(joint):
                     lift = Rotation.from_euler(axis, degrees, degrees=True)
                     places[joint] = places[hinge] + lift.apply(places[joint] - places[hinge])
-    bound, rests = (np.stack([at(x, y, z, t) for x, y, z in t.apply(places)]) for t in (turn, rest or turn))
+    bowed = np.where(np.array(legs)[:, None], places, places[0] + bow.apply(places - places[0]))
+    bound, rests = (
+        np.stack([at(x, y, z, t) for x, y, z in t.apply(posed)]) for t, posed in ((turn, places), (rest or turn, bowed))
+    )
     count = len(places)
     skin = Skin(np.arange(count), np.linalg.inv(bound))
     joints = np.stack([np.arange(count), np.roll(np.arange(count), 1)], axis=1)
@@ -54,9 +61,12 @@ def places_of(surfaces: Surfaces) -> dict[str, np.ndarray]:
 STANDS = places_of(assemble(whole(Rotation.identity()), HERE))
 
 
-@pytest.mark.parametrize(("axis", "degrees"), [("x", 90), ("x", -90), ("z", 90), ("z", -90)])
-def test_a_person_who_lies_is_made_to_stand(axis: str, degrees: float) -> None:
-    surfaces = assemble(whole(Rotation.from_euler(axis, degrees, degrees=True)), HERE)
+@pytest.mark.parametrize(
+    ("axis", "degrees", "stoops"),
+    [("x", 90, 0), ("x", -90, 0), ("z", 90, 0), ("z", -90, 0), ("x", 90, 80), ("z", 90, 80), ("z", -90, 80)],
+)
+def test_a_person_who_lies_is_made_to_stand(axis: str, degrees: float, stoops: float) -> None:
+    surfaces = assemble(whole(Rotation.from_euler(axis, degrees, degrees=True), stoops=stoops), HERE)
     assert any("it is turned upright" in note for note in surfaces.notes)
     for role, place in places_of(surfaces).items():
         np.testing.assert_allclose(place, STANDS[role], atol=1e-9)
@@ -72,6 +82,9 @@ def test_a_person_who_lies_is_made_to_stand(axis: str, degrees: float) -> None:
         whole(Rotation.from_euler("x", 45, degrees=True)),
         whole(Rotation.from_euler("x", 55, degrees=True)),
         whole(Rotation.from_euler("x", 90, degrees=True), rest=Rotation.identity()),
+        whole(Rotation.from_euler("x", 90, degrees=True), rest=Rotation.identity(), stoops=80),
+        whole(Rotation.from_euler("x", -90, degrees=True), rest=Rotation.identity(), stoops=80),
+        whole(Rotation.from_euler("x", -90, degrees=True), stoops=80),  # sits up on the floor
     ],
 )
 def test_who_stands_sits_leans_or_goes_on_four_legs_is_not_turned(scene: Scene) -> None:

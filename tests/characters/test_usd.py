@@ -188,12 +188,18 @@ def test_motion_without_a_mesh_is_the_identity_on_its_own_rig(character: Path) -
     assert not notes
 
 
-def test_stage_without_mesh_and_animated_skeleton_is_no_motion(character: Path) -> None:
+@pytest.mark.parametrize(
+    ("clips", "sentence"),
+    [(True, "no Skeleton is bound to this SkelAnimation"), (False, "no skinned mesh, skeleton or animated nodes")],
+)
+def test_stage_without_mesh_and_animated_skeleton_is_no_motion(character: Path, clips: bool, sentence: str) -> None:
     def strip(stage: Usd.Stage) -> None:
         stage.RemovePrim("/Man/Body")
         stage.GetPrimAtPath("/Man/Skeleton").RemoveProperty("skel:animationSource")
+        for prim in [] if clips else [one.GetPath() for one in stage.Traverse() if one.IsA(UsdSkel.Animation)]:
+            stage.RemovePrim(prim)
 
-    with pytest.raises(InputError, match=r"man\.usda: no skinned mesh, skeleton or animated nodes"):
+    with pytest.raises(InputError, match=rf"man\.usda: (.*: )?{sentence}"):
         read_motion(edited(character, strip))
 
 

@@ -121,6 +121,19 @@ def test_takes_vectors_by_joint_and_other_names_of_arrays(tmp_path: Path) -> Non
     same(read_amass(write(tmp_path, poses=None, smpl_poses=poses, trans=None, transl=trans)), expected)
     aist = {"smpl_poses": poses, "smpl_trans": trans * 64, "smpl_scaling": np.array([64.0])}
     same(read_amass(write(tmp_path, poses=None, trans=None, **aist)), expected)
+    wham = {"pose": 0 * poses, "trans": 0 * trans, "pose_world": poses.reshape(5, 72), "trans_world": trans}
+    same(read_amass(write(tmp_path, poses=None, **wham)), expected)
+
+
+def test_takes_rotation_matrices(tmp_path: Path) -> None:
+    """As HMR 2.0 and others write them; also of half a turn and of none."""
+    poses = np.random.default_rng(5).normal(size=(5, 24, 3))
+    poses[0, :2] = np.array([[0, 0, 0], [np.pi, 0, 0]])
+    matrices = Rotation.from_rotvec(poses.reshape(-1, 3)).as_matrix().reshape(5, 24, 3, 3)
+    found = read_amass(write(tmp_path, poses=None, global_orient=matrices[:, :1], body_pose=matrices[:, 1:]))
+    expected = read_amass(write(tmp_path, poses=poses.reshape(5, 72)))
+    dots = np.abs(np.sum(found.clip.rotations * expected.clip.rotations, axis=-1))
+    np.testing.assert_allclose(dots, 1, atol=BOUND)
 
 
 @pytest.mark.parametrize(("turn", "says"), [(0.0, "Y is up"), (np.pi, "Y is down")])
@@ -162,7 +175,7 @@ def test_leaves_a_person_lying_in_a_file_of_amass(tmp_path: Path) -> None:
     ("changes", "says"),
     [
         ({"poses": None}, "poses"),
-        ({"trans": None}, "trans"),
+        ({"trans": None}, r"trans.*; zeros \[5, 3\] let the person stay in place"),
         ({"poses": None, "body_pose": np.zeros((5, 63))}, "global_orient"),
         ({"poses": None, "body_pose": np.zeros((5, 60)), "global_orient": np.zeros((5, 3))}, "body_pose"),
         ({"poses": None, "body_pose": np.zeros((4, 63)), "global_orient": np.zeros((5, 3))}, "5, 4"),

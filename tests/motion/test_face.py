@@ -1,5 +1,6 @@
-"""Facial motion: recordings of Live Link Face, poses with a face, and weights on a character's own expressions."""
+"""Facial motion: of Live Link Face, Audio2Face and poses with a face, and weights on a character's own expressions."""
 
+import json
 from pathlib import Path
 from typing import Any
 
@@ -68,6 +69,39 @@ def test_weights_are_held_to_0_and_1(tmp_path: Path) -> None:
 )
 def test_a_damaged_recording_is_a_sentence(tmp_path: Path, text: str, sentence: str) -> None:
     path = tmp_path / "talk.csv"
+    path.write_text(text)
+    with pytest.raises(InputError, match=sentence) as error:
+        read_face(path)
+    assert str(path) in str(error.value)
+
+
+def audio2face(**changed: Any) -> str:
+    exported = {"exportFps": 60.0, "numPoses": 2, "numFrames": 2, "facsNames": ["jawOpen", "eyeBlinkLeft"]}
+    return json.dumps(exported | {"weightMat": [[0.25, 0], [1.5, 0.5]]} | changed)
+
+
+def test_reads_a_face_of_audio2face(tmp_path: Path) -> None:
+    path = tmp_path / "talk.json"
+    path.write_text(audio2face())
+    face = read_face(path)
+    assert (face.rate, face.names) == (60.0, ("jawOpen", "eyeBlinkLeft"))
+    np.testing.assert_array_equal(face.weights, [[0.25, 0], [1, 0.5]])
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        ("{", "cannot be read as JSON"),
+        ("[]", "holds no exportFps; expected a face of Audio2Face with exportFps, facsNames, weightMat"),
+        (audio2face(exportFps=0), "exportFps is 0, expected"),
+        (audio2face(facsNames=[1, 2]), "facsNames is .*, expected a list of names"),
+        (audio2face(weightMat=[]), "weightMat"),
+        (audio2face(weightMat=[[0.5]]), "weightMat"),
+        (audio2face(weightMat=[[0.5, None]]), "weightMat"),
+    ],
+)
+def test_a_damaged_face_of_audio2face_is_a_sentence(tmp_path: Path, text: str, sentence: str) -> None:
+    path = tmp_path / "talk.json"
     path.write_text(text)
     with pytest.raises(InputError, match=sentence) as error:
         read_face(path)

@@ -40,12 +40,17 @@ def test_refuses_what_holds_no_motion(tmp_path: Path, name: str, says: str) -> N
         ("a.c3d", "markers"),
         ("a.trc", "mua-capture poses"),
         ("a.amc", "export it as BVH"),
+        ("a.json", "mua-capture poses makes an .npz"),
+        ("a.tak", "export it from OptiTrack Motive"),
+        ("a.mov", "estimate the person's poses"),
+        ("a.anim", "export it from Unity"),
     ],
 )
 def test_says_how_to_convert_motion_of_other_kinds(tmp_path: Path, name: str, says: str) -> None:
     (tmp_path / name).write_bytes(b"\x80\x04")
-    with pytest.raises(InputError, match=says):
-        read_motion(tmp_path / name)
+    for path in (tmp_path / name, tmp_path):
+        with pytest.raises(InputError, match=says):
+            read_motion(path)
 
 
 def test_refuses_a_directory_without_motion(tmp_path: Path) -> None:

@@ -213,6 +213,19 @@ def test_a_body_whose_hips_hang_on_its_spine_goes_as_a_whole(tmp_path: Path) -> 
     assert_same(browser_clip(tmp_path, target, path), loaded.clip)
 
 
+def test_a_pose_before_the_motion_is_left_out(tmp_path: Path) -> None:
+    source, target = person(size=1.2), person(arms_down=45, size=0.8)
+    clip = walk(source)
+    rest = (source.bind_rotations, source.bind_translations - np.eye(len(source.names))[:, :1])
+    begun = (np.concatenate([one[None], of]) for one, of in zip(rest, (clip.rotations, clip.translations), strict=True))
+    path = animated(source, Clip("walk", clip.rate, *begun)).save(tmp_path / "begun.glb")
+    [loaded] = load_motions(path, target, mapping=None, rate=RATE, feet="keep")
+    found = browser_clip(tmp_path, target, path)
+    assert len(found["rotations"]) == len(clip)
+    assert "The first frame, a pose apart from the motion, is left out." in found["notes"]
+    assert_same(found, loaded.clip)
+
+
 def test_a_mapping_names_what_names_do_not_tell(tmp_path: Path) -> None:
     source, target = person(), person(arms_down=40)
     odd = {name: f"n{joint}" for joint, name in enumerate(source.names)}

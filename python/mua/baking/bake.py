@@ -54,7 +54,7 @@ def bake(
     face: Annotated[
         PathLike | None,
         Option(
-            "Facial motion for all clips: a .csv of Live Link Face, or a motion file with expressions.",
+            "Facial motion for all clips: a .csv of Live Link Face, a .json of Audio2Face, or a motion file.",
             default="that of the motion",
         ),
     ] = None,

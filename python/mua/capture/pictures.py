@@ -11,6 +11,8 @@ from mua.capture.video import VIDEOS, MissingImage, video_frame
 from mua.errors import InputError
 
 GREY, DARK = 64, 32  # differences between red, green and blue that compression makes of greys; what it makes of black
+LABELS = 32  # more parts of a body than any tool tells apart (LIP and CIHP 20, Sapiens 28)
+LOSSLESS = (".png", ".bmp", ".tif", ".tiff")  # where small numbers are no noise of compression
 TURNED, ON_SIDE = range(2, 9), range(5, 9)  # orientations of EXIF: turned or mirrored at all, by a quarter turn
 
 
@@ -19,6 +21,7 @@ def read_picture(
     *,
     number: int,  # of the frame, where the file is a video
     size: tuple[int, int],  # width, height, pixels, that it must have
+    labels: int = 0,  # up to which numbers of 16 bits are labels, which are not scaled to 8 bits
 ) -> Array:
     """Colours [H, W, 3] uint8 sRGB, or [H, W, 4] with alpha; raises MissingImage or, for anything else, InputError."""
     if not path.is_file():
@@ -31,7 +34,7 @@ def read_picture(
         with Image.open(path) as opened:
             image = _as_calibrated(path, opened, size)
             clear = "A" in image.getbands() or "transparency" in image.info
-            return np.asarray(in_8_bits(image).convert("RGBA" if clear else "RGB"))
+            return np.asarray(_in_8_bits(image, labels).convert("RGBA" if clear else "RGB"))
     except (UnidentifiedImageError, OSError, SyntaxError, ValueError) as error:
         if isinstance(error, InputError):
             raise
@@ -74,13 +77,22 @@ def _of_size(path: Path, opened: Image.Image, size: tuple[int, int]) -> Image.Im
 
 def read_mask(path: Path, *, number: int, size: tuple[int, int]) -> Array:
     """Cover [H, W, 1] uint8: 255 inside."""
-    return as_mask(read_picture(path, number=number, size=size))
+    labels = LABELS if path.suffix.lower() in LOSSLESS else 1
+    return as_mask(read_picture(path, number=number, size=size, labels=labels), labels=labels)
+
+
+def _in_8_bits(image: Image.Image, labels: int) -> Image.Image:
+    if image.mode.startswith("I;16") and np.max(values := np.asarray(image)) <= labels:
+        return Image.fromarray(values.astype(np.uint8))
+    return in_8_bits(image)
 
 
 def as_mask(
     picture: Array,  # [H, W, 3 or 4] uint8
+    *,
+    labels: int = 1,  # where nothing is larger, it is labels: of a person, or of the parts of a body
 ) -> Array:
-    """Cover [H, W, 1] uint8: alpha of a cut-out, all that colours paint, else brightness; 0 and 1 for 0 and 255."""
+    """Cover [H, W, 1] uint8: alpha of a cut-out, all that colours or labels paint, else brightness."""
     if picture.shape[2] == 4 and np.ptp(picture[..., 3]) > 0:
         cover = picture[..., 3:]
     else:
@@ -89,7 +101,7 @@ def as_mask(
         least = np.minimum(np.minimum(red, green), blue)[..., None]
         if (cover - least).max() > GREY:  # labels of people or parts of a body, dark red for the first in many tools
             return np.where(cover > DARK, np.uint8(255), np.uint8(0))
-    return cover * np.uint8(255) if cover.max() == 1 else cover
+    return np.where(cover > 0, np.uint8(255), np.uint8(0)) if cover.max() <= labels else cover
 
 
 def require_size(path: Path, found: tuple[int, int], expected: tuple[int, int]) -> None:

@@ -18,7 +18,7 @@ from mua.errors import InputError
 from mua.pose.clip import Clip
 from mua.pose.joint_names import limb_count
 from mua.pose.skeleton import Skeleton
-from mua.scene import Part, Scene
+from mua.scene import Part, Scene, Skin
 
 LIMBS = 8  # bones of arms and legs of a whole body, as `limb_count` counts them
 
@@ -43,6 +43,7 @@ def bare_animation(scene: Scene, path: Path) -> Animation:
     if not any(len(skin.joints) for skin in scene.skins):
         raise InputError(f"{path}: no skinned mesh, skeleton or animated nodes were found, expected motion")
     scene = without_collapsed(scene, path)
+    scene = replace(scene, skins=tuple(_bound(scene, skin) for skin in scene.skins))
     carries = _body(scene)
     scene = replace(scene, parts=tuple(_stand_in(scene, skin, carries) for skin in range(len(scene.skins))))
     bind = bind_pose(scene)
@@ -75,6 +76,13 @@ def whole_animation(meshed: Scene, bare: Iterable[Scene], path: Path) -> Animati
 def _is_fuller(skeleton: Skeleton, than: Skeleton) -> bool:
     limbs, fewer = limb_count(skeleton), limb_count(than)
     return limbs > fewer or (limbs == fewer and len(skeleton.names) > 2 * len(than.names))
+
+
+def _bound(scene: Scene, skin: Skin) -> Skin:
+    """A skin of several joints whose matrices are all the identity, which say nothing, bound where it rests."""
+    if len(skin.joints) > 1 and _is_identity(skin.inverse_binds).all():
+        return replace(skin, inverse_binds=np.linalg.inv(scene.rest[skin.joints]))
+    return skin
 
 
 def _stand_in(scene: Scene, skin: int, carries: Array) -> Part:

@@ -10,7 +10,8 @@ from mua.pose.joint_names import SIDES
 from mua.scene import Scene
 
 STRAIGHT = 45.0  # degrees between trunk and legs up to which a body is upright in itself, as no animal on four legs is
-ALONG = 30.0  # degrees from a level axis within which it lies
+NEAR = np.cos(np.radians(30))  # to a level axis within which it lies
+FLOOR = 0.15  # of the body's extent along an axis: what stands on the floor is not higher above its lowest joint
 ON_FOUR = 0.3  # of the trunk's length: hands and feet both this far below it carry an animal that stands
 Y = np.array([0.0, 1, 0])
 
@@ -20,15 +21,28 @@ def upright_rotation(scene: Scene, bind: Bind) -> Array | None:
     found = roles_in(scene, bind)
     if _on_four_legs(found, bind.places):
         return None
-    body = [_upright(found, places) for places in (bind.places, scene.rest[bind.nodes, :3, 3])]
-    bound, rests = body
-    if bound is None or rests is None:
+    at_rest = scene.rest[bind.nodes, :3, 3]
+    bound = _upright(found, bind.places)
+    if bound is None:
         return None
     axis = np.where([True, False, True], np.sign(bound), 0) * (np.abs(bound) == np.abs(bound).max())
-    near = np.cos(np.radians(ALONG))
-    if bound @ axis < near or rests @ axis < near:
-        return None
-    return rotation.to_matrix(rotation.between(axis, Y))
+    lies = bound @ axis >= NEAR and _lies(found, at_rest, axis)
+    return rotation.to_matrix(rotation.between(axis, Y)) if lies else None
+
+
+def _lies(found: dict[str, tuple[int, ...]], places: Array, axis: Array) -> bool:
+    """Whether a body lies along an axis; one that is bent does, where it stands on its feet along that axis alone."""
+    along = _upright(found, places)
+    if along is None:
+        return _on_feet(found, places, axis) and not _on_feet(found, places, Y)
+    return bool(along @ axis >= NEAR)
+
+
+def _on_feet(found: dict[str, tuple[int, ...]], places: Array, up: Array) -> bool:
+    """Whether both feet are the lowest parts of a body, in a world where `up` [3] is."""
+    feet = [found[f"{side} foot"][0] for side in SIDES if f"{side} foot" in found]
+    heights = places[[joints[0] for joints in found.values()]] @ up
+    return len(feet) == len(SIDES) and bool(max(places[feet] @ up) - min(heights) < FLOOR * np.ptp(heights))
 
 
 def _on_four_legs(found: dict[str, tuple[int, ...]], places: Array) -> bool:

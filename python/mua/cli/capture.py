@@ -83,8 +83,8 @@ def describe(
     calibration: Annotated[
         Path | None,
         typer.Option(
-            help="Cameras: a .toml of Pose2Sim, Caliscope or anipose, or a folder with EasyMocap's intri.yml and "
-            "extri.yml or with COLMAP's cameras and images."
+            help="Cameras: a .toml of Pose2Sim, Caliscope or anipose, calibration.csv of ActorsHQ, transforms.json of "
+            "Nerfstudio, or a folder with EasyMocap's intri.yml and extri.yml or with COLMAP's cameras and images."
         ),
     ] = None,
     axes: Annotated[
@@ -144,6 +144,8 @@ class _Given(NamedTuple):
 def _described(source: Path, folder: Path, given: _Given) -> "Capture":
     """The capture that a folder of another layout is."""
     from mua.capture.readers.avatarrex import RATE, is_avatarrex, read_avatarrex
+    from mua.capture.readers.calibrations import calibration_in
+    from mua.capture.readers.calibrations.others import refuse_others
     from mua.capture.readers.streams import is_streams, read_streams
 
     if is_avatarrex(source):
@@ -160,6 +162,12 @@ def _described(source: Path, folder: Path, given: _Given) -> "Capture":
             leave_out=given.leave_out,
         )
     if not is_streams(source):
+        if found := calibration_in(source):
+            raise InputError(
+                f"{source}: give its cameras with --calibration {found}, the person with --template, and the poses "
+                "with --motion"
+            )
+        refuse_others(source)
         raise InputError(
             f"{source}: its layout is not known; expected calibration_full.json or calibration.json with "
             "smpl_params.npz, or videos stream*.mp4 with cameras.calib or a .calibration file"

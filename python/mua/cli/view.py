@@ -63,7 +63,7 @@ def view(
     face: Annotated[
         Path | None,
         typer.Option(
-            help="Facial motion beside the body's: a Live Link Face recording (.csv), or a motion file with a face."
+            help="Facial motion beside the body's: a .csv of Live Link Face, a .json of Audio2Face, or a motion file."
         ),
     ] = None,
     output: Annotated[

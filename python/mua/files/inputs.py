@@ -54,4 +54,4 @@ def require_capture(path: Path) -> None:
     """Raise InputError where there is no directory of that name, or one that is no capture."""
     require_folder(path)
     if not (path / CAPTURE).is_file():
-        raise InputError(f"{path}: not a capture, it holds no {CAPTURE}")
+        raise InputError(f"{path}: not a capture, it holds no {CAPTURE}, which mua-capture describe writes")

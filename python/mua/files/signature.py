@@ -43,6 +43,7 @@ FOREIGN_SUFFIXES = {
     **dict.fromkeys((".max", ".3ds"), "3ds Max"),
     **dict.fromkeys((".pmx", ".pmd"), "Blender with an importer for MikuMikuDance models"),
     ".c4d": "Cinema 4D",
+    ".uasset": "Unreal Engine",
 }
 
 

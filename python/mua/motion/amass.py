@@ -67,11 +67,11 @@ _FINGERS = tuple(
 # By the number of joints in `poses`: the body alone, SMPL, SMPL-H, SMPL-X.
 NOMINAL = {22: _BODY, 24: _BODY + _HANDS, 52: _BODY + _FINGERS, 55: _BODY + _FACE + _FINGERS}
 
-POSE_KEYS = ("poses", "smpl_poses", "fullpose")
+POSE_KEYS = ("poses", "smpl_poses", "fullpose", "pose_world")  # of AMASS, AIST++, SMPL-X, WHAM
 SPLIT_KEYS = (("root_orient", "global_orient"), ("pose_body", "body_pose"))  # where the pose comes in parts
 HAND_KEYS = (("left_hand_pose",), ("right_hand_pose",))
 HANDS_KEY = "pose_hand"  # both hands in one array
-TRANSLATION_KEYS = ("trans", "transl", "smpl_trans", "root_trans")
+TRANSLATION_KEYS = ("trans_world", "trans", "transl", "smpl_trans", "root_trans")
 FACE_KEYS = ("expressions", "expression", "face_expr")  # of BEAT2, of pose estimators, of Motion-X
 SCALE_KEY = "smpl_scaling"  # of AIST++: units of its smpl_trans in a metre
 OF_AMASS = ("dmpls", "mocap_time_length", "markers_latent")  # only files of AMASS itself have these: Z is up
@@ -88,7 +88,7 @@ STANDS = 0.7  # of a unit along an axis: cosine of how far a trunk may lean that
 
 
 def read_amass(path: Path) -> SourceMotion:
-    """Read axis angles [F, 3 J] or [F, J, 3] (radians), places [F, 3] (metres) and the frame rate.
+    """Read axis angles [F, 3 J] or [F, J, 3] (radians) or matrices [F, J, 3, 3], places [F, 3] (metres) and the rate.
 
     J is 22 (a body), 24 (SMPL), 52 (SMPL-H) or 55 (SMPL-X); `root_orient` and `pose_body`, or `global_orient` and
     `body_pose`, do as well. `expressions`, `expression` or `face_expr` [F, K] are the face's. Pickled
@@ -160,8 +160,20 @@ def _load(path: Path) -> dict[str, Array]:
                     f"{path}: {key} holds places of joints {list(shape)}, not rotations, which a character needs; "
                     "fit a body model to them (such as SMPL by SMPLify) and give its poses"
                 )
-        raise InputError(f"{path}: expected the array 'poses' of an AMASS motion, found {', '.join(held) or 'none'}")
-    return {key: array.astype(float) for key, array in arrays.items()} | of_amass
+        raise InputError(
+            f"{path}: expected the array 'poses' of an AMASS motion (or 'global_orient' and 'body_pose'), found "
+            f"{', '.join(held) or 'none'}"
+        )
+    return {key: _vectors(array.astype(float)) for key, array in arrays.items()} | of_amass
+
+
+def _vectors(array: Array) -> Array:
+    """Axis angles [..., 3] of rotation matrices [F, J, 3, 3], which some pose estimators write; others as they are."""
+    if array.ndim != 4 or array.shape[2:] != (3, 3):
+        return array
+    quaternions = rotation.from_matrix(array)
+    sines = np.linalg.norm(quaternions[..., 1:], axis=-1, keepdims=True)
+    return quaternions[..., 1:] * 2 * np.arctan2(sines, quaternions[..., :1]) / np.maximum(sines, np.finfo(float).tiny)
 
 
 def _first(arrays: Mapping[str, Array], keys: Sequence[str]) -> str | None:
@@ -210,7 +222,10 @@ def _joined(path: Path, arrays: Mapping[str, Array]) -> Array:
 def _translation(path: Path, arrays: Mapping[str, Array], frames: int) -> Array:
     key = _first(arrays, TRANSLATION_KEYS)
     if key is None:
-        raise InputError(f"{path}: expected the array 'trans' of an AMASS motion, found {', '.join(arrays)}")
+        raise InputError(
+            f"{path}: expected the array 'trans' of an AMASS motion, found {', '.join(arrays)}; zeros {[frames, 3]} "
+            "let the person stay in place"
+        )
     if arrays[key].shape != (frames, 3):
         raise InputError(f"{path}: {key}: expected shape {[frames, 3]}, found {list(arrays[key].shape)}")
     scale = arrays[SCALE_KEY] if key == "smpl_trans" and SCALE_KEY in arrays else np.ones(1)

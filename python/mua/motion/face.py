@@ -9,6 +9,7 @@ import numpy as np
 from mua.arrays import Array
 from mua.characters.messages import listed
 from mua.errors import InputError
+from mua.motion.audio2face import read_audio2face
 from mua.motion.live_link import read_live_link
 from mua.motion.read import read_motion
 from mua.motion.source_motion import SourceMotion
@@ -27,12 +28,14 @@ class FaceMotion:
 
 
 def read_face(path: Path) -> FaceMotion:
-    """Read a Live Link Face recording (.csv), or the face of the first clip of a motion file that has one.
+    """Read a face of Live Link Face (.csv) or Audio2Face (.json), or of the first clip of a motion file that has one.
 
     Errors: InputError where the file cannot be read or no clip moves an expression.
     """
     if path.suffix.lower() == ".csv":
         return FaceMotion(*read_live_link(path))
+    if path.suffix.lower() == ".json":
+        return FaceMotion(*read_audio2face(path))
     for source in read_motion(path):
         if source.clip.expressions is not None:
             return FaceMotion(source.clip.rate, source.expressions, source.clip.expressions)

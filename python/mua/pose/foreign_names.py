@@ -31,7 +31,7 @@ _CHINESE_SIDED = {
 WIDE_CENTRAL = _JAPANESE_CENTRAL | _CHINESE_CENTRAL
 WIDE_SIDED = _JAPANESE_SIDED | _CHINESE_SIDED
 
-# German, Spanish, French, Italian and Portuguese, without accents.
+# German, Spanish, French, Italian, Portuguese, Dutch, Polish and Japanese in Latin letters, without accents.
 FOREIGN_SIDE = {
     **dict.fromkeys(("links", "linke", "linker", "linkes", "izq", "izquierda", "izquierdo", "gauche"), "left"),
     **dict.fromkeys(("sinistra", "sinistro", "sx", "esquerda", "esquerdo", "esq"), "left"),
@@ -39,6 +39,8 @@ FOREIGN_SIDE = {
         ("rechts", "rechte", "rechter", "rechtes", "der", "derecha", "derecho", "droite", "droit"), "right"
     ),
     **dict.fromkeys(("destra", "destro", "dx", "direita", "direito", "dir"), "right"),
+    **dict.fromkeys(("lewa", "lewe", "lewy", "hidari"), "left"),
+    **dict.fromkeys(("prawa", "prawe", "prawy", "migi"), "right"),
 }
 FOREIGN_CENTRAL = {
     **dict.fromkeys(
@@ -46,8 +48,10 @@ FOREIGN_CENTRAL = {
     ),
     **dict.fromkeys(("wirbelsaeule", "wirbelsaule", "brust", "bauch", "columna", "pecho", "colonne", "torse"), "spine"),
     **dict.fromkeys(("poitrine", "spina", "petto", "torace", "coluna", "peito"), "spine"),
-    **dict.fromkeys(("hals", "nacken", "cuello", "cou", "collo", "pescoco"), "neck"),
-    **dict.fromkeys(("kopf", "cabeza", "tete", "testa", "cabeca"), "head"),
+    **dict.fromkeys(("heup", "heupen", "bekken", "biodra", "miednica", "koshi"), "hips"),
+    **dict.fromkeys(("wervelkolom", "borst", "kregoslup", "sebone", "mune"), "spine"),
+    **dict.fromkeys(("hals", "nacken", "cuello", "cou", "collo", "pescoco", "nek", "szyja", "kubi"), "neck"),
+    **dict.fromkeys(("kopf", "cabeza", "tete", "testa", "cabeca", "hoofd", "glowa", "atama"), "head"),
 }
 FOREIGN_SIDED = {
     **dict.fromkeys(("schulter", "schluesselbein", "hombro", "clavicula", "epaule", "spalla", "ombro"), "shoulder"),
@@ -61,4 +65,13 @@ FOREIGN_SIDED = {
     **dict.fromkeys(("knoechel", "knochel", "tobillo", "cheville", "caviglia", "tornozelo"), "ankle"),
     **dict.fromkeys(("fuss", "pie", "pied", "piede", "pe"), "foot"),
     **dict.fromkeys(("zehe", "zehen", "dedos", "orteil", "orteils", "dita"), "toe"),
+    **dict.fromkeys(("schouder", "sleutelbeen", "bark", "kata"), "shoulder"),
+    **dict.fromkeys(("bovenarm", "ramie", "ude"), "upper_arm"),
+    **dict.fromkeys(("onderarm", "elleboog", "przedramie", "lokiec", "hiji"), "forearm"),
+    **dict.fromkeys(("pols", "dlon", "nadgarstek", "tekubi"), "hand"),
+    **dict.fromkeys(("dij", "dijbeen", "bovenbeen", "udo", "momo"), "thigh"),
+    **dict.fromkeys(("onderbeen", "scheenbeen", "podudzie", "lydka", "kolano", "hiza", "sune"), "shin"),
+    **dict.fromkeys(("enkel", "kostka", "ashikubi"), "ankle"),
+    **dict.fromkeys(("voet", "stopa"), "foot"),
+    **dict.fromkeys(("teen", "tenen", "palce", "tsumasaki"), "toe"),
 }

@@ -37,7 +37,7 @@ _CENTRAL = {
     "hips": ("hips", "hip", "pelvis", "spinebase", "lowerbody"),
     "spine": (
         *("spine", "chest", "upperchest", "lowerchest", "thorax", "lowerback", "upperback", "back", "waist"),
-        *("torso", "lowertorso", "uppertorso", "upperbody"),
+        *("torso", "lowertorso", "uppertorso", "upperbody", "lowerspine", "middlespine", "upperspine"),
         *(
             "abdomen",
             "lowerabdomen",
@@ -57,14 +57,14 @@ _SIDED = {
     "collar": ("collar", "clavicle", "clav", "scapula", "collarbone"),
     "shoulder": ("shoulder",),
     "upper_arm": ("arm", "upperarm", "uparm", "uarm", "humerus", "shldr", "bicep"),
-    "forearm": ("forearm", "lowerarm", "lowarm", "loarm", "farm", "radius", "elbow"),
-    "hand": ("hand", "wrist", "fist"),
+    "forearm": ("forearm", "lowerarm", "lowarm", "loarm", "farm", "larm", "radius", "ulna", "elbow"),
+    "hand": ("hand", "wrist", "handwrist", "fist"),
     "hip": ("hip",),
     "thigh": ("thigh", "upleg", "upperleg", "femur"),
-    "shin": ("shin", "leg", "lowerleg", "lowleg", "loleg", "calf", "tibia", "knee"),
+    "shin": ("shin", "leg", "lowerleg", "lowleg", "loleg", "calf", "tibia", "shank", "knee"),
     "ankle": ("ankle",),
-    "foot": ("foot",),
-    "toe": ("toe", "toes", "toebase", "ball"),
+    "foot": ("foot", "footankle", "calcn"),
+    "toe": ("toe", "toes", "toebase", "ball", "football"),
 } | {
     part: tuple(
         f"{before}{name}{segment}" for name in names for before in ("", "hand", "f", "fng") for segment in _SEGMENTS

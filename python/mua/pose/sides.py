@@ -1,8 +1,8 @@
 """Whether what is called left is on the left: names may be swapped, bodies are not.
 
-Feet point ahead, knees bend to the front and elbows to the back, animals carry their heads ahead of their hips, eyes
-are before the head and a tail is behind, and who goes far mostly goes ahead. Each of these is measured against the
-direction that the names have for ahead: left x up.
+Feet point ahead, knees bend to the front and elbows to the back, animals carry their heads ahead of their hips, a face
+is before the joint of its head, eyes are too and a tail is behind, and who goes far mostly goes ahead. Each of these is
+measured against the direction that the names have for ahead: left x up.
 """
 
 import re
@@ -19,12 +19,14 @@ FOOT = 0.1  # of a leg's length: how far a toe is ahead of the ankle; counts as 
 BEND = 0.05  # of a limb's length: how far a knee is ahead, or an elbow behind, of the line through the limb
 FAR = 3.0  # lengths of the trunk that a path must have before its direction counts
 STRAY = 0.1  # of a figure's size: how far eyes are ahead or a tail is behind
+FACE = 0.05  # of a figure's size: how far the middle of a head is ahead of its joint, unless hair hangs behind it
+HINT = 0.9  # that a head counts, which alone does not overrule the names
 CERTAIN = 2.0  # evidence of a motion alone, whose rest pose may show anything, that overrules the names
 MOST = 3.0  # that one kind of evidence counts
 NARROW = 0.02  # of a trunk's length: joints of a pair that are nearer than this show no sides
 LEVEL = 0.5  # cosine from upright: a trunk below it and legs above it are those of an animal, or of somebody who crawls
 AHEAD = re.compile(r"eye(?!lash)|nose|jaw|mouth|snout|beak|tongue", re.IGNORECASE)
-BEHIND = re.compile(r"tail(?!or)", re.IGNORECASE)
+BEHIND = re.compile(r"tail(?!or)|abdomen|stinger", re.IGNORECASE)
 Y = np.array([0.0, 1, 0])
 
 
@@ -40,8 +42,8 @@ class Figure:
 
 
 SWAPPED = (
-    "The {}'s joints called left are on its right, by how feet, knees and elbows point and where it goes; "
-    "left and right are exchanged."
+    "The {}'s joints called left are on its right, by how its body is built and how it moves; left and right are "
+    "exchanged."
 )
 
 
@@ -58,7 +60,7 @@ def evidence(figure: Figure, across: Array) -> float:
     `across` [3] leads from the joints called right to those called left in the bind pose.
     """
     bound = _Body.of(figure, figure.bind)
-    found = NAMES + _clipped(_marks(figure, across) / STRAY)
+    found = NAMES + _clipped(_marks(figure, across) / STRAY) + np.clip(_face(figure, across) / FACE, -HINT, HINT)
     if bound is None:
         return found
     found += _clipped(_feet(figure, bound) / FOOT) + _clipped(_head(bound))
@@ -154,6 +156,15 @@ def _feet(figure: Figure, body: _Body) -> float:
 def _head(body: _Body) -> float:
     """Evidence of a trunk that lies level: its upper end is ahead."""
     return float(MOST * _unit(body.top - body.hips) @ body.ahead) if body.level else 0.0
+
+
+def _face(figure: Figure, across: Array) -> float:
+    """How far what the head carries is ahead of its joint, of the figure's size."""
+    heads = list(figure.roles.get("head", ()))[:1]
+    if not heads or figure.surface is None or not np.isfinite(figure.surface[heads]).all():
+        return 0.0
+    size = float(np.ptp(figure.bind, axis=0).max()) or 1.0
+    return float((figure.surface[heads] - figure.bind[heads])[0] @ _unit(np.cross(across, Y))) / size
 
 
 def _marks(figure: Figure, across: Array) -> float:

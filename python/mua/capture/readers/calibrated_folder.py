@@ -13,11 +13,12 @@ from mua.capture.pictures import picture_size
 from mua.capture.readers.avatarrex import below
 from mua.capture.readers.calibrations import read_cameras
 from mua.capture.readers.calibrations.calibrated import Calibrated
-from mua.capture.readers.numbered import complete_frames, numbered_files, numbered_pattern, whole_runs
+from mua.capture.readers.numbered import complete_frames, number_of, numbered_files, numbered_pattern, whole_runs
 from mua.capture.video import VIDEOS, count_frames, video_frame, video_rate
 from mua.errors import InputError
 
-IMAGES, MASKS = ("images", "imgs", "videos", "video"), ("masks", "mask")
+IMAGES = ("images", "imgs", "rgbs", "videos", "video")
+MASKS = ("masks", "mask", "mask_cihp")
 RATE = 30.0  # frames per second of images, where it is not given
 
 
@@ -42,7 +43,7 @@ class _Filmed:
         if self.is_video:
             return range(min(count_frames(self.folder / self.pattern.format(camera=one)) for one in self.cameras))
         files = numbered_files((self.folder / self.pattern.format(camera=name, frame=0)).parent)
-        return range(int(files[0].stem), int(files[-1].stem) + 1)
+        return range(number_of(files[0]), number_of(files[-1]) + 1)
 
     def size(self, camera: str, like: tuple[int, int] | None) -> tuple[int, int]:
         """Width and height of a camera's images, which was calibrated for those of a size `like`."""
@@ -71,10 +72,17 @@ def read_calibrated(
     Frames of which a camera lacks image or mask are left out: each run of frames that all have is a clip.
     Errors: InputError with one sentence.
     """
-    images, masks = _filmed(source, IMAGES), _filmed(source, MASKS)
+    calibrated = read_cameras(calibration)
+    images, masks = (_filmed(_folders(source, names)) for names in (IMAGES, MASKS))
+    if images is None:  # in ZJU-MoCap, folders of cameras lie in that of the capture
+        known = {_short(one.name) for one in calibrated}
+        images = _numbered(source, [path for path in _folders(source, ("*",)) if _short(path.name) in known])
     if images is None:
-        raise InputError(f"{source}: found no images; looked for videos/cam00.mp4 and images/cam00/000000.jpg")
-    pairs = _paired(read_cameras(calibration), images, calibration)
+        raise InputError(
+            f"{source}: found no images; looked for videos/cam00.mp4 and images/cam00/000000.jpg: a folder or a video "
+            "for each of several cameras that stand still"
+        )
+    pairs = _paired(calibrated, images, calibration)
     turned = np.eye(3) if axes is None else axes
     cameras = tuple(one.camera(images.size(name, one.size), name=name, scale=scale, axes=turned) for one, name in pairs)
     return Capture(
@@ -91,19 +99,26 @@ def read_calibrated(
     )
 
 
-def _filmed(source: Path, folders: Sequence[str]) -> _Filmed | None:
-    for folder in (source / name for name in folders):
-        if not folder.is_dir():
-            continue
+def _folders(source: Path, names: Sequence[str]) -> list[Path]:
+    return [path for name in names for path in sorted(source.glob(name)) if path.is_dir()]
+
+
+def _filmed(folders: Sequence[Path]) -> _Filmed | None:
+    for folder in folders:
         videos = sorted(file for file in folder.iterdir() if file.suffix.lower() in VIDEOS)
         if videos:
             suffix = videos[0].suffix
             names = tuple(file.stem for file in videos if file.suffix == suffix)
             return _Filmed(folder, names, f"{{camera}}{suffix}")
-        names = tuple(sorted(path.name for path in folder.iterdir() if path.is_dir() and numbered_files(path)))
-        if pattern := numbered_pattern(folder, "{camera}", names):
-            return _Filmed(folder, names, pattern)
+        if found := _numbered(folder, _folders(folder, ("*",))):
+            return found
     return None
+
+
+def _numbered(folder: Path, cameras: Sequence[Path]) -> _Filmed | None:
+    names = tuple(path.name for path in cameras if numbered_files(path))
+    pattern = numbered_pattern(folder, "{camera}", names)
+    return _Filmed(folder, names, pattern) if pattern else None
 
 
 def _paired(calibrated: Sequence[Calibrated], images: _Filmed, calibration: Path) -> list[tuple[Calibrated, str]]:

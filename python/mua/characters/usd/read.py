@@ -52,7 +52,14 @@ def usd_scenes(path: Path) -> tuple[Scene, Iterator[Scene]]:
 
 def _bare(stage: Usd.Stage, path: Path) -> Iterator[Scene]:
     skeletons: list[Bones] = []
-    for query in animated(stage):
+    queries = animated(stage)
+    loose = next((prim for prim in stage.Traverse(PREDICATE) if prim.IsA(UsdSkel.Animation)), None)
+    if loose and not queries:
+        raise InputError(
+            f"{path}: {loose.GetPath()}: no Skeleton is bound to this SkelAnimation; export it with its Skeleton, "
+            "whose skel:animationSource names it"
+        )
+    for query in queries:
         skeletons.append(read_bones(query, path, first=_node_count(skeletons)))
     joints = [bones.first + 1 + np.arange(len(bones.paths)) for bones in skeletons]
     skins = [Skin(at, np.linalg.inv(bones.binds)) for at, bones in zip(joints, skeletons, strict=True)]

@@ -4,6 +4,7 @@ import { Download, sourceOf } from "../download.js";
 import { AvatarError, unfetched } from "../error.js";
 import { readBvh } from "./bvh.js";
 import { readGltf } from "./gltf.js";
+import { withoutLeadingPose } from "./leading_pose.js";
 import { retarget } from "./retarget.js";
 
 /** @typedef {import("./types.js").MotionSource} MotionSource */
@@ -22,7 +23,7 @@ export async function readClip(source, avatar, { name, mapping = {}, animation }
     const text = textOf(content);
     const isBvh = /^\s*(#|\/\/|;|hierarchy)/i.test(text.slice(0, 200));
     if (!isBvh && !/^\s*(glTF|\{)/.test(text)) throw new AvatarError("expected a BVH, glTF, GLB, VRM or VRMA file.");
-    const motion = isBvh ? readBvh(text) : await readGltf(content, beside, animation);
+    const motion = withoutLeadingPose(isBvh ? readBvh(text) : await readGltf(content, beside, animation));
     const expresses = motion.expressions.names.length && avatar.expressions.length;
     const names = expresses ? await import("../names/match.js").catch(unfetched("its expressions")) : null;
     const { clip, notes } = retarget(motion, avatar, mapping, names);

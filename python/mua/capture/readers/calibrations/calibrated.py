@@ -8,7 +8,7 @@ import numpy as np
 from mua import rotation
 from mua.arguments import finite_array
 from mua.arrays import Array
-from mua.capture.camera import COEFFICIENTS, CaptureCamera
+from mua.capture.camera import COEFFICIENTS, UNDISTORTED, CaptureCamera
 from mua.errors import InputError
 
 ROUNDING = 1e-3  # what a few digits leave of a rotation
@@ -42,21 +42,42 @@ class Calibrated:
     ) -> Self:
         """A camera from OpenCV's matrices, as files hold them; raises InputError for impossible values."""
         intrinsic = finite_array(matrix, f"{where}: camera matrix", (3, 3))
-        if intrinsic[0, 0] <= 0 or intrinsic[1, 1] <= 0:
-            raise InputError(
-                f"{where}: the focal lengths are {intrinsic[0, 0]:g} and {intrinsic[1, 1]:g}, expected above 0"
-            )
-        if abs(intrinsic[0, 1]) > ROUNDING * intrinsic[0, 0]:
+        if abs(intrinsic[0, 1]) > ROUNDING * abs(intrinsic[0, 0]):
             raise InputError(f"{where}: the skew is {intrinsic[0, 1]:g}, expected 0")
-        column, row = intrinsic[:2, 2] + OPENCV_PIXEL
+        return cls.of_pinhole(
+            name,
+            where,
+            size=size,
+            focal=(intrinsic[0, 0], intrinsic[1, 1]),
+            centre=intrinsic[:2, 2] + OPENCV_PIXEL,
+            distortion=coefficients(distortion, where),
+            world_to_camera=rigid(turn, translation, where),
+        )
+
+    @classmethod
+    def of_pinhole(
+        cls,
+        name: str,
+        where: str,
+        *,
+        size: Any,  # [2], or None
+        focal: Any,  # [2] pixels
+        centre: Any,  # [2] pixels from the first one's corner
+        world_to_camera: Array,  # [4, 4]
+        distortion: tuple[float, ...] = UNDISTORTED,
+    ) -> Self:
+        """A camera of finite numbers in pixels; raises InputError for focal lengths or a size that cannot be."""
+        (fx, fy), (column, row) = focal, centre
+        if fx <= 0 or fy <= 0:
+            raise InputError(f"{where}: the focal lengths are {fx:g} and {fy:g}, expected above 0")
         return cls(
             name=name,
             where=where,
             size=None if size is None else _size(size, where),
-            focal=(float(intrinsic[0, 0]), float(intrinsic[1, 1])),
+            focal=(float(fx), float(fy)),
             centre=(float(column), float(row)),
-            distortion=coefficients(distortion, where),
-            world_to_camera=rigid(turn, translation, where),
+            distortion=distortion,
+            world_to_camera=world_to_camera,
         )
 
     def camera(
