@@ -153,7 +153,7 @@ namespace UnityEngine
 
         public Transform transform { get; private set; }
         public int layer { get; set; }
-        public ulong sceneCullingMask { get { return StandIns.Stages.Opened.Contains(this) ? 1UL : 2UL; } } // of the opened prefab, of the scene
+        public ulong sceneCullingMask { get { return StandIns.Stages.Opened.Contains(this) ? 1UL : 1UL << 63 | 2UL; } } // of the opened prefab; of the game and the scene view
         public string tag { get; set; }
         public bool activeSelf { get { return active; } }
         public bool activeInHierarchy
