@@ -88,6 +88,13 @@ def test_keeps_what_it_looks_at_in_the_middle(device: Device, avatar_files: tupl
         session(device, Source(avatar_files), look_at="tail")
 
 
+def test_a_close_look_is_from_outside_of_the_figure(device: Device, avatar_files: tuple[Path, ...]) -> None:
+    looking = session(device, Source(avatar_files), look_at="tip", zoom=50.0)
+    (camera,) = looking._cameras((400, 300))
+    low, high = looking._stage.bounds + looking._root()
+    assert np.maximum(low - camera.position, camera.position - high).max() > -1e-6
+
+
 def test_another_clip_is_seen_from_the_same_side(device: Device, avatar_files: tuple[Path, ...]) -> None:
     watching = session(device, Source(avatar_files), azimuth=20.0)
     clip, root = watching.clip, watching._stage.rig.skeleton.root
