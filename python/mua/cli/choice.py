@@ -6,12 +6,16 @@ from typing import Any
 import typer
 
 
-def choice(names: Sequence[str], *flags: str, help: str, several: bool = False) -> Any:
+def choice(names: Sequence[str], *flags: str, help: str, default: str | bool = True, several: bool = False) -> Any:
     """An option whose value is one of `names`; where it may come several times, its help lists them."""
     listing = f"{help}: {', '.join(names)}." if several else help
     metavar = "NAME" if several else f"<{'|'.join(names)}>"
     return typer.Option(
-        *flags, metavar=metavar, help=listing, autocompletion=lambda incomplete: _begun(names, incomplete)
+        *flags,
+        metavar=metavar,
+        help=listing,
+        show_default=default,
+        autocompletion=lambda incomplete: _begun(names, incomplete),
     )
 
 
