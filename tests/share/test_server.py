@@ -51,6 +51,29 @@ def ask(port: int, path: str, method: str = "GET", **headers: str) -> tuple[int,
     return found
 
 
+class Changing(type(Path())):  # type: ignore[misc]  # the class of paths on this system
+    """A file in whose place a shorter one, or none, comes when it has been looked at."""
+
+    def open(self, *given: Any, **named: Any) -> Any:
+        self.unlink()
+        if self.stem == "short":
+            Path(self).write_bytes(BYTES[:10])
+        return super().open(*given, **named)
+
+
+@pytest.mark.parametrize(("stem", "got"), [("short", 10), ("none", 0)])
+def test_an_answer_ends_where_its_file_is_replaced_meanwhile(tmp_path: Path, stem: str, got: int) -> None:
+    path = tmp_path / f"{stem}.muaavatar"
+    path.write_bytes(BYTES)
+    with serving({"a": Changing(path)}) as server:
+        thread = Thread(target=server.handle_request)
+        thread.start()
+        with pytest.raises(http.client.IncompleteRead) as cut:
+            ask(server.server_port, "/a")
+        thread.join()
+    assert len(cut.value.partial) == got
+
+
 def test_a_body_does_not_wait_until_its_header_is_confirmed(port: int, monkeypatch: pytest.MonkeyPatch) -> None:
     undelayed = []
 
