@@ -71,7 +71,10 @@ test("a server that fails is a sentence with its answer, at first and while the 
 
 test("an address that is no text in UTF-8 is named as it is written", async () => {
   answers = [[404]];
-  await assert.rejects(new Download("http://host/100%.muaavatar").whole(() => {}), /^AvatarError: 100%.muaavatar cannot/);
+  await assert.rejects(
+    new Download("http://host/100%.muaavatar").whole(() => {}),
+    /^AvatarError: 100%.muaavatar cannot/,
+  );
 });
 
 test("a server out of reach is a sentence", async () => {
