@@ -93,7 +93,7 @@ def test_an_element_plays_on_in_another_document_and_looks_the_same(opened: Open
     look = "getComputedStyle(gone.shadowRoot.querySelector('canvas')).position"
     page.evaluate(f"(globalThis.gone = {ELEMENT}, document.body.append(document.createElement('iframe')), 0)")
     for place in ("document.querySelector('iframe').contentDocument", "document"):
-        page.evaluate(f"({place}.body.append(gone), 0)")
+        page.evaluate(f"(document.createElement('template').content.append(gone), {place}.body.append(gone), 0)")
         page.evaluate(SETTLED)
         assert page.evaluate(f"[fakes, fake.disposed, fake.started, {look}]") == [1, False, True, "absolute"]
 

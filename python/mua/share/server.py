@@ -27,7 +27,7 @@ TYPES = {
 }
 BINARY = "application/octet-stream"
 BLOCK = 1 << 18  # bytes that are read at once
-RANGE = re.compile(r"bytes=(\d*)-(\d*)")
+RANGE = re.compile(r"bytes=(\d{0,18})-(\d{0,18})")  # longer numbers are no file's
 LONGEST_REPLY = 32  # bytes of what a page sends
 
 

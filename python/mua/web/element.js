@@ -107,7 +107,8 @@ export class MuaAvatar extends Attributed {
 
   /** In the document of a frame or of another window, such as a picture in picture. */
   adoptedCallback() {
-    if (this.shadowRoot) this.shadowRoot.adoptedStyleSheets = [look(this.ownerDocument)];
+    const { shadowRoot, ownerDocument } = this;
+    if (shadowRoot && ownerDocument.defaultView) shadowRoot.adoptedStyleSheets = [look(ownerDocument)]; // no template's
   }
 
   attributeChangedCallback(
