@@ -1,6 +1,8 @@
 """Exported USD: skeleton, skin, detailed geometry and splats as Pixar's own library reads them."""
 
 import io
+import os
+import resource
 from pathlib import Path
 
 import numpy as np
@@ -8,7 +10,7 @@ import pytest
 from commands import Commands
 from people import upright
 from PIL import Image
-from pxr import Ar, Usd, UsdGeom, UsdShade, UsdSkel, UsdValidation, UsdVol
+from pxr import Ar, Sdf, Usd, UsdGeom, UsdShade, UsdSkel, UsdUtils, UsdValidation, UsdVol
 from synthetic_avatar import with_surface
 
 import mua
@@ -193,3 +195,36 @@ def test_the_mesh_of_a_package_shines_in_its_texture(
         pixels = np.asarray(picture)
     expected = skinned_mesh(stored, stored.decode("wave", 1)).texture
     np.testing.assert_array_equal(pixels, expected)
+
+
+@pytest.mark.parametrize("ending", ["usdc", "usda"])
+def test_a_disk_without_room_is_reported_in_a_sentence_and_leaves_nothing(
+    command: Commands, avatar_file: Path, tmp_path: Path, ending: str
+) -> None:
+    out, before = tmp_path / f"out.{ending}", resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (2000, before[1]))
+    try:
+        ended = command("export", avatar_file, "-o", out, "--what", "geometry")
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    assert ended.sentence.startswith(f"error: {out}: cannot be written (")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_package_that_the_library_cuts_short_is_refused(
+    command: Commands, avatar_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As it does on a full disk, where it says that all went well."""
+    make = UsdUtils.CreateNewUsdzPackage
+
+    def make_half(source: Sdf.AssetPath, target: str) -> bool:
+        made = make(source, target)
+        os.truncate(target, Path(target).stat().st_size // 2)
+        return bool(made)
+
+    monkeypatch.setattr(UsdUtils, "CreateNewUsdzPackage", make_half)
+    ended = command("export", avatar_file, "-o", tmp_path / "out.usdz", "--what", "skeleton")
+    assert (
+        ended.sentence == f"error: {tmp_path / 'out.usdz'}: cannot be written (the USD library could not write it all)"
+    )
+    assert list(tmp_path.iterdir()) == []

@@ -74,8 +74,11 @@ def test_says_how_far_outside_of_training_the_pose_is(device: Device, avatar_fil
     assert len(set(found)) == 3
 
 
-def test_keeps_what_it_looks_at_in_the_middle(device: Device, avatar_files: tuple[Path, ...]) -> None:
-    looking = session(device, Source(avatar_files), look_at="tip")
+def test_keeps_what_it_looks_at_in_the_middle_from_outside(device: Device, avatar_files: tuple[Path, ...]) -> None:
+    looking = session(device, Source(avatar_files), look_at="tip", zoom=50.0)
+    (camera,) = looking._cameras((400, 300))
+    low, high = looking._stage.bounds + looking._root()
+    assert np.maximum(low - camera.position, camera.position - high).max() > -1e-6
     places = find_focus(looking._stage.rig, "tip").places(
         looking._stage.rig.skeleton, looking.clip.rotations, looking.clip.translations
     )

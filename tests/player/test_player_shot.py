@@ -75,16 +75,25 @@ def wrapped(angle: float) -> float:
     return float(np.angle(np.exp(1j * angle)))
 
 
-def test_what_is_looked_at_stays_in_the_middle_at_its_size() -> None:
-    shot = Shot((64, 96), look_at="middle", zoom=3.0, follow=True)
+@pytest.mark.parametrize("zoom", [1.5, 30.0])
+def test_what_is_looked_at_stays_in_the_middle_at_its_size(zoom: float) -> None:
+    shot = Shot((64, 96), look_at="middle", zoom=zoom, follow=True)
     places = find_focus(RIG, "middle").places(RIG.skeleton, CLIP.rotations, CLIP.translations)
-    depths = []
+    sizes = []  # of a metre there, in halves of the image
     for (camera,), place in zip(film(shot, RIG, CLIP), places, strict=True):
         np.testing.assert_allclose(ndc(camera, place[None]), 0, atol=ROUNDING)
-        depths.append(np.linalg.norm(camera.position - place))
-    np.testing.assert_allclose(depths, depths[0])
+        sizes.append(camera.projection[1, 1] / np.linalg.norm(camera.position - place))
+    np.testing.assert_allclose(sizes, sizes[0])
     (far,) = film(replace(shot, zoom=1.0), RIG, CLIP)[0]
-    assert np.linalg.norm(far.position - places[0]) == pytest.approx(3 * depths[0])
+    assert sizes[0] == pytest.approx(zoom * far.projection[1, 1] / np.linalg.norm(far.position - places[0]))
+
+
+@pytest.mark.parametrize("look_at", [None, "tip"])
+@pytest.mark.parametrize("azimuth", [0.0, np.pi / 2, 2.0])
+def test_however_near_it_comes_the_camera_stays_outside_of_the_figure(look_at: str | None, azimuth: float) -> None:
+    shot = Shot((64, 96), look_at=look_at, azimuth=azimuth, elevation=0.4, zoom=50.0, turning=1.0)
+    for (camera,), (low, high) in zip(film(shot, RIG, CLIP), frame_boxes(RIG, CLIP), strict=True):
+        assert np.maximum(low - camera.position, camera.position - high).max() > -ROUNDING
 
 
 def test_a_camera_that_does_not_follow_looks_where_the_joint_was_at_first() -> None:

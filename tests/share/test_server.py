@@ -7,6 +7,7 @@ import socket
 import subprocess
 import sys
 from collections.abc import Iterator
+from contextlib import closing
 from pathlib import Path
 from threading import Thread
 from typing import Any, BinaryIO
@@ -43,12 +44,33 @@ def port(tmp_path: Path) -> Iterator[int]:
 
 def ask(port: int, path: str, method: str = "GET", **headers: str) -> tuple[int, dict[str, str], bytes]:
     """Status, headers and body of an answer."""
-    connection = http.client.HTTPConnection(AUTHORITY, port)
-    connection.request(method, path, headers=headers)
-    answer = connection.getresponse()
-    found = answer.status, dict(answer.getheaders()), answer.read()
-    connection.close()
-    return found
+    with closing(http.client.HTTPConnection(AUTHORITY, port)) as connection:
+        connection.request(method, path, headers=headers)
+        with connection.getresponse() as answer:
+            return answer.status, dict(answer.getheaders()), answer.read()
+
+
+class Changing(type(Path())):  # type: ignore[misc]  # the class of paths on this system
+    """A file in whose place a shorter one, or none, comes when it has been looked at."""
+
+    def open(self, *given: Any, **named: Any) -> Any:
+        self.unlink()
+        if self.stem == "short":
+            Path(self).write_bytes(BYTES[:10])
+        return super().open(*given, **named)
+
+
+@pytest.mark.parametrize(("stem", "got"), [("short", 10), ("none", 0)])
+def test_an_answer_ends_where_its_file_is_replaced_meanwhile(tmp_path: Path, stem: str, got: int) -> None:
+    path = tmp_path / f"{stem}.muaavatar"
+    path.write_bytes(BYTES)
+    with serving({"a": Changing(path)}) as server:
+        thread = Thread(target=server.handle_request)
+        thread.start()
+        with pytest.raises(http.client.IncompleteRead) as cut:
+            ask(server.server_port, "/a")
+        thread.join()
+    assert len(cut.value.partial) == got
 
 
 def test_a_body_does_not_wait_until_its_header_is_confirmed(port: int, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -106,7 +128,9 @@ def test_a_part_that_is_not_there_is_refused(port: int, asked: str) -> None:
     assert (status, headers["Content-Range"]) == (416, "bytes */1024")
 
 
-@pytest.mark.parametrize("asked", ["bytes=0-1,4-5", "lines=1-2", "bytes=-"])
+@pytest.mark.parametrize(
+    "asked", ["bytes=0-1,4-5", "lines=1-2", "bytes=-", pytest.param(f"bytes={'9' * 5000}-", id="a number too long")]
+)
 def test_what_is_no_single_range_is_answered_by_the_whole(port: int, asked: str) -> None:
     assert ask(port, "/my%20hero.muaavatar", Range=asked)[::2] == (200, BYTES)
 

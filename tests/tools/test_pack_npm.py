@@ -100,8 +100,10 @@ def test_it_holds_every_module_and_no_settings(installed: Path) -> None:
 def test_its_entries_are_there(installed: Path) -> None:
     package = installed / "node_modules" / "@mua" / "player"
     given = json.loads((package / "package.json").read_text())
-    assert "." in given["exports"]
-    for name, entry in given["exports"].items():
+    entries = given["exports"]
+    assert "." in entries
+    assert (package / entries.pop("./worker.js")).is_file()  # for bundlers, which look for it by this name
+    for name, entry in entries.items():
         assert (package / entry["types"]).is_file()
         assert (package / entry["default"]).is_file()
         if name != ".":  # where TypeScript reads no exports, as in what Next.js 15 sets up

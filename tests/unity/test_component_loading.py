@@ -122,5 +122,11 @@ def test_bytes_load_as_their_file_does(story: Story) -> None:
     assert of_bytes.partition(": ")[2] == of_file.partition(".muaavatar: ")[2] != ""
 
 
+def test_clones_of_an_avatar_of_bytes_show_it_until_the_last_is_gone(story: Story) -> None:
+    reported = story("IsClonedFromBytes", "first", "second")
+    first, second = (f"Ready {synthetic_avatar(seed).name}" for seed in (1, 2))
+    assert (reported["state"], reported["kept"]) == ([second, first, second], ["False"])
+
+
 def test_a_component_that_is_off_loads_once_it_is_on(story: Story) -> None:
     assert story("LoadsWhileDisabled", "first")["state"] == ["Empty", "Ready", "Empty"]

@@ -37,7 +37,7 @@ def humanoid(motion: SourceMotion) -> SourceMotion:
     return replace(motion, skeleton=replace(skeleton, names=names), stated=stated)
 
 
-@pytest.mark.parametrize("name", ["RetargetsNamed", "RetargetsMapped", "RetargetsHumanoid"])
+@pytest.mark.parametrize("name", ["RetargetsNamed", "RetargetsClone", "RetargetsMapped", "RetargetsHumanoid"])
 def test_transforms_pose_an_avatar_as_the_package_retargets_them(story: Story, people: Path, name: str) -> None:
     """Wherever their root stands and however large it is: by names, by a mapping, and by an Animator's bones alone."""
     reported = story(name, "ours", "theirs")

@@ -68,7 +68,7 @@ const operations = {
     await page.evaluate(code);
     await (await chooser).accept(files);
   },
-  resize: ({ page, width, height }) => page.setViewport({ width, height }),
+  resize: ({ page, width, height, scale = 1 }) => page.setViewport({ width, height, deviceScaleFactor: scale }),
   screenshot: ({ page, path }) => page.screenshot({ path }).then(() => path),
   tree: ({ page }) => page.accessibility.snapshot(),
   reported: ({ reported }) => reported,

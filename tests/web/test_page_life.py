@@ -81,6 +81,23 @@ def test_a_canvas_has_the_pixels_that_it_has_on_the_screen(opened: Open, ratio: 
         assert (width, height) == (int(wide * sharp + 0.5), int(high * sharp + 0.5))
 
 
+def test_a_canvas_that_comes_onto_a_sharper_display_has_its_pixels(opened: Open) -> None:
+    page = opened(size=(400, 300))
+    wide = page.evaluate(SIZES)[0]
+    page.do("resize", width=400, height=300, scale=2)
+    page.wait(f"{SIZES}[0] === {2 * wide}")
+
+
+def test_an_element_plays_on_in_another_document_and_looks_the_same(opened: Open) -> None:
+    page = opened()
+    look = "getComputedStyle(gone.shadowRoot.querySelector('canvas')).position"
+    page.evaluate(f"(globalThis.gone = {ELEMENT}, document.body.append(document.createElement('iframe')), 0)")
+    for place in ("document.querySelector('iframe').contentDocument", "document"):
+        page.evaluate(f"(document.createElement('template').content.append(gone), {place}.body.append(gone), 0)")
+        page.evaluate(SETTLED)
+        assert page.evaluate(f"[fakes, fake.disposed, fake.started, {look}]") == [1, False, True, "absolute"]
+
+
 def test_a_paused_element_of_another_size_is_drawn_again(opened: Open) -> None:
     page = opened()
     page.press(" ")

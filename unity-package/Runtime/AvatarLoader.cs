@@ -45,12 +45,6 @@ namespace Mua
             return loader;
         }
 
-        /// <summary>A file's bytes, which messages call `name`.</summary>
-        public static AvatarLoader Of(byte[] content, string name)
-        {
-            return new AvatarLoader(name) { reading = Task.Run(() => Read(content)) };
-        }
-
         /// <summary>A file by its full path, or by its path in persistentDataPath or else in StreamingAssets.</summary>
         public static AvatarLoader Of(string file)
         {

@@ -51,13 +51,11 @@ namespace Mua
         private AvatarInstance shown; // null while there is nothing to show
         private AvatarAsset loaded; // as avatar and file were when they took effect
         private string loadedFile = "";
-        private byte[] given; // a file's bytes in place of avatar and file; not saved in the scene
-        private string givenName = "";
         private bool isEdited; // the inspector has changed a field
         private bool isBegun; // the clip, at Time
         private float shownTime; // Time when it took effect
 
-        /// <summary>The imported avatar that is shown; null where it came from a file.</summary>
+        /// <summary>The avatar that is shown, imported or made of bytes; null where it came from a file.</summary>
         public AvatarAsset Avatar => avatar;
 
         public AvatarState State => shown == null ? AvatarState.Empty : shown.State;
@@ -193,13 +191,13 @@ namespace Mua
 
         private AvatarExpressions Expressions => shown == null ? AvatarExpressions.None : shown.Expressions;
 
-        /// <summary>All AvatarRenderers of active GameObjects in the open scenes, in no order.</summary>
-        internal static AvatarRenderer[] All()
+        /// <summary>All AvatarRenderers in the open scenes, in no order; those of inactive GameObjects too where asked for.</summary>
+        internal static AvatarRenderer[] All(FindObjectsInactive inactive = FindObjectsInactive.Exclude)
         {
 #if UNITY_6000_4_OR_NEWER // where the one below is deprecated
-            return FindObjectsByType<AvatarRenderer>();
+            return FindObjectsByType<AvatarRenderer>(inactive);
 #else
-            return FindObjectsByType<AvatarRenderer>(FindObjectsSortMode.None);
+            return FindObjectsByType<AvatarRenderer>(inactive, FindObjectsSortMode.None);
 #endif
         }
 
@@ -214,7 +212,6 @@ namespace Mua
         {
             avatar = asset;
             file = "";
-            given = null;
             Reload();
         }
 
@@ -223,21 +220,16 @@ namespace Mua
         {
             avatar = null;
             file = path;
-            given = null;
             Reload();
         }
 
         /// <summary>
         /// Shows the avatar of a file's bytes, from a download, a stream or a TextAsset; they must not be changed while the
-        /// component has them, and are not saved in the scene. Messages call the avatar `name`.
+        /// component or a clone of it has them, and are not saved in the scene. Messages call the avatar `name`.
         /// </summary>
         public void Load(byte[] content, string name = "an avatar in memory")
         {
-            avatar = null;
-            file = "";
-            given = content;
-            givenName = name;
-            Reload();
+            Load(content == null ? null : AvatarAsset.CreateTemporary(content, name));
         }
 
         /// <summary>
@@ -281,6 +273,11 @@ namespace Mua
             Release();
         }
 
+        private void OnDestroy()
+        {
+            Forget(avatar);
+        }
+
         private void OnValidate()
         {
             isEdited = isActiveAndEnabled; // nothing may be made or given back here
@@ -312,7 +309,6 @@ namespace Mua
             isEdited = false;
             if (avatar != loaded || file != loadedFile)
             {
-                given = null;
                 Reload();
             }
             else
@@ -349,9 +345,13 @@ namespace Mua
         {
             Release();
             isEdited = false;
+            if (loaded != avatar)
+            {
+                Forget(loaded);
+            }
             loaded = avatar;
             loadedFile = file;
-            if (!isActiveAndEnabled || (given == null && avatar == null && string.IsNullOrEmpty(file)))
+            if (!isActiveAndEnabled || (avatar == null && string.IsNullOrEmpty(file)))
             {
                 return;
             }
@@ -365,9 +365,17 @@ namespace Mua
 
         private AvatarLoader Open()
         {
-            return given != null ? AvatarLoader.Of(given, givenName)
-                : avatar != null ? AvatarLoader.Of(avatar)
-                : AvatarLoader.Of(file);
+            return avatar != null ? AvatarLoader.Of(avatar) : AvatarLoader.Of(file);
+        }
+
+        /// <summary>Destroys an asset that was made of bytes, unless another component, such as a clone of this, has it.</summary>
+        private void Forget(AvatarAsset asset)
+        {
+            if (asset != null && asset.IsTemporary
+                && !Array.Exists(All(FindObjectsInactive.Include), other => other != this && other.avatar == asset))
+            {
+                DestroyImmediate(asset);
+            }
         }
 
         private void Release()

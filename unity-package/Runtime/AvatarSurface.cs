@@ -69,6 +69,10 @@ namespace Mua
 #if UNITY_EDITOR
             parameters.overrideSceneCullingMask = true; // an opened prefab and the scene cast none into each other
             parameters.sceneCullingMask = owner.sceneCullingMask;
+            if (UnityEditor.SceneVisibilityManager.instance.IsHidden(owner)) // in scene views
+            {
+                parameters.sceneCullingMask &= UnityEditor.SceneManagement.SceneCullingMasks.GameViewObjects;
+            }
 #endif
             Graphics.RenderPrimitivesIndexed(parameters, MeshTopology.Triangles, templateIndices, templateIndices.count);
         }

@@ -18,7 +18,7 @@ namespace Mua
         [SerializeField, Tooltip("Which joint of the rig moves a joint of the avatar, where names do not tell.")]
         private JointPair[] joints = new JointPair[0];
 
-        private RigRest rest; // as the rig stood when the component awoke
+        [SerializeField, HideInInspector] private RigRest rest = null; // as the rig stood when the component awoke
 
         /// <summary>Whether avatars stay where they stand: they go up and down with the rig, but not along.</summary>
         public bool InPlace
@@ -28,7 +28,7 @@ namespace Mua
         }
 
         /// <summary>The rig at rest, where no humanoid avatar tells: in an editor that does not play, as it stands now.</summary>
-        internal RigRest Rest => rest != null && Application.isPlaying ? rest : new RigRest(transform);
+        internal RigRest Rest => rest != null && rest.IsTaken && Application.isPlaying ? rest : new RigRest(transform);
 
         /// <summary>By a joint of the avatar the joint of the rig that moves it.</summary>
         internal Dictionary<string, string> Mapping
@@ -66,7 +66,10 @@ namespace Mua
 
         private void Awake()
         {
-            TakeRest();
+            if (rest == null || !rest.IsTaken) // else this is a clone of a rig that may be moving
+            {
+                TakeRest();
+            }
         }
 
         /// <summary>A joint of the avatar and the joint of the rig that moves it, by name.</summary>

@@ -1,3 +1,4 @@
+using System;
 using System.Collections.Generic;
 using System.Linq;
 using Mua.Format;
@@ -10,27 +11,38 @@ namespace Mua
     /// The transforms of a rig and how they lie at rest in its root's space: as they are when it is made, or as a humanoid
     /// avatar has them in its T-pose.
     /// </summary>
+    [Serializable]
     internal sealed class RigRest
     {
-        private readonly Vector3[] at, sizes; // in their parents
-        private readonly Quaternion[] turns; // in their parents
-        private readonly int[] parents;
+        [SerializeField] private Transform[] joints; // so that a clone of the rig has its own
+        [SerializeField] private Vector3[] at, sizes; // in their parents
+        [SerializeField] private Quaternion[] turns; // in their parents
+        [SerializeField] private int[] parents;
+
+        private RigRest()
+        {
+            // for Unity's serializer, which fills the fields
+        }
 
         public RigRest(Transform root)
         {
-            Joints = root.GetComponentsInChildren<Transform>()
+            bool isInactive = !root.gameObject.activeInHierarchy; // then none of its transforms is active
+            joints = root.GetComponentsInChildren<Transform>(isInactive)
                 .Where(joint => joint == root || !joint.TryGetComponent(out SkinnedMeshRenderer _)).ToArray(); // parents first
             at = Joints.Select(joint => joint.localPosition).ToArray();
             turns = Joints.Select(joint => joint.localRotation).ToArray();
             sizes = Joints.Select(joint => joint.localScale).ToArray();
-            parents = Joints.Select(joint => joint == root ? -1 : System.Array.IndexOf(Joints, joint.parent)).ToArray();
+            parents = Joints.Select(joint => joint == root ? -1 : Array.IndexOf(Joints, joint.parent)).ToArray();
             at[0] = Vector3.zero;
             turns[0] = Quaternion.identity;
             sizes[0] = Vector3.one;
         }
 
         /// <summary>The root and what is below it, without meshes that bones move.</summary>
-        public Transform[] Joints { get; }
+        public Transform[] Joints => joints;
+
+        /// <summary>Whether it was taken, of transforms that are still there.</summary>
+        public bool IsTaken => joints != null && joints.Length > 0 && Array.TrueForAll(joints, joint => joint != null);
 
         /// <summary>The skeleton at rest, right-handed, metres of the unscaled rig.</summary>
         public Skeleton Skeleton(Animator animator)
@@ -52,7 +64,7 @@ namespace Mua
             var roles = new string[Joints.Length];
             for (var bone = HumanBodyBones.Hips; IsHumanoid(animator) && bone < HumanBodyBones.LastBone; bone++)
             {
-                int joint = System.Array.IndexOf(Joints, animator.GetBoneTransform(bone));
+                int joint = Array.IndexOf(Joints, animator.GetBoneTransform(bone));
                 if (joint >= 0)
                 {
                     roles[joint] = Retargeter.HumanoidRole(bone.ToString());

@@ -46,7 +46,7 @@ def bake(
     motion: Annotated[
         PathLike | Sequence[PathLike],
         Option(
-            "Motion file, or directory of motion files; may be repeated. Where a capture is given, its own motion "
+            "Motion file, or folder of motion files; may be repeated. Where a capture is given, its own motion "
             "is recorded too.",
             default="the character's own clips",
         ),
@@ -137,7 +137,7 @@ def bake(
     device: DeviceOption = "auto",
     jobs: Annotated[int | None, Option("Number of processes that record.", default="one per CPU core", least=1)] = None,
     work: Annotated[
-        PathLike | None, Option("Directory for the recording and checkpoints.", default="beside the output")
+        PathLike | None, Option("Folder for the recording and checkpoints.", default="beside the output")
     ] = None,
     listener: Listener | None = None,
 ) -> "Baked":

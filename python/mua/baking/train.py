@@ -38,7 +38,7 @@ if TYPE_CHECKING:  # torch takes seconds to load
 
 def train(
     recording: Annotated[
-        "PathLike | Recording", Option("Directory of a recording, as a TeacherWriter writes it.", metavar="RECORDING")
+        "PathLike | Recording", Option("Folder of a recording, as a TeacherWriter writes it.", metavar="RECORDING")
     ],
     *,
     output: OutputOption = "avatar.muaavatar",
@@ -53,7 +53,7 @@ def train(
     storage: StorageOption = "f16",
     seed: SeedOption = 0,
     device: DeviceOption = "auto",
-    work: Annotated[PathLike | None, Option("Directory for checkpoints.", default="beside the output")] = None,
+    work: Annotated[PathLike | None, Option("Folder for checkpoints.", default="beside the output")] = None,
     listener: Listener | None = None,
 ) -> "Baked | None":
     """Distil a recording into a `.muaavatar`, as mua-train does: minutes to hours.

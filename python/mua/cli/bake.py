@@ -29,7 +29,7 @@ PANELS = {
 def main(
     *,
     more: Annotated[
-        list[Path] | None, typer.Argument(metavar="MORE", help="With --check: more characters, or directories of them.")
+        list[Path] | None, typer.Argument(metavar="MORE", help="With --check: more characters, or folders of them.")
     ] = None,
     check: Annotated[
         bool, typer.Option("--check", help="Train nothing; in seconds, compare splats and motion with their sources.")

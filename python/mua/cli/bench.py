@@ -44,7 +44,7 @@ def bench(
     device: Annotated[str | None, typer.Option(help="Graphics device: its number or part of its name.")] = None,
     frames: Annotated[int, typer.Option(min=1, help="Number of frames to measure.")] = 20,
     size: Annotated[str, typer.Option(help="Image size per eye in pixels: WIDTHxHEIGHT or one number.")] = SIZE,
-    stereo: Annotated[bool, typer.Option(help="Render two eyes.")] = False,
+    stereo: Annotated[bool, typer.Option("--stereo", help="Draw left and right eye side by side.")] = False,
     counts: Annotated[
         bool, typer.Option("--counts", help="Count bytes, operations, dispatches and fragments; measure no time.")
     ] = False,

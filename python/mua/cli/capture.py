@@ -101,7 +101,10 @@ def describe(
         float | None, typer.Option(help="Height of the template in metres.", show_default="as its file says")
     ] = None,
     leave_out: Annotated[
-        list[str] | None, typer.Option(help="Mesh, node or material of the template that nobody filmed; repeatable.")
+        list[str] | None,
+        typer.Option(
+            metavar="<str>", help="Mesh, node or material of the template that nobody filmed; may be repeated."
+        ),
     ] = None,
 ) -> None:
     """Write a capture.json for images in another layout; the images are not copied."""

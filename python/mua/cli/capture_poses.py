@@ -37,7 +37,7 @@ def poses(
         str, typer.Option(help="What X, Y and Z of the keypoints are in a world with Y up; X,-Z,Y where their Z is up.")
     ] = "X,Y,Z",
     scale: Annotated[
-        float, typer.Option(min=1e-9, help="What lengths are multiplied by, where the file's are in another unit.")
+        float, typer.Option(min=1e-9, help="Metres in one unit of the keypoints; 0.001 for millimetres.")
     ] = 1.0,
     rate: Annotated[
         float | None, typer.Option(min=1, max=1000, help="Frames per second.", show_default="as the file says, or 30")

@@ -20,7 +20,7 @@ def evaluate(**options: Any) -> None:
     compared with its images instead, by the cameras and in the clips that are held out. Every system is also trained
     at the largest size that costs at most as much as ours.
 
-    Trained systems are kept in the directory 'work' of the output; the same command does not train them again.
+    Trained systems are kept in the folder 'work' of the output; the same command does not train them again.
     """
     settings = EvaluationSettings(**read_options(EvaluationSettings, options))
     filmed = is_capture(settings.recording)

@@ -23,12 +23,12 @@ def export(
         typer.Option(
             "--output",
             "-o",
-            help="File to write; its ending says which format. A name with %04d, or a directory, for a file per frame.",
+            help="File to write; its ending says which format. A name with %04d, or a folder, for a file per frame.",
             show_default=False,
         ),
     ] = None,
     clip: Annotated[
-        list[str] | None, typer.Option(help="Clip to export.", show_default="the first one", metavar="TEXT")
+        list[str] | None, typer.Option(help="Clip to export.", show_default="the first one", metavar="<str>")
     ] = None,
     frames: Annotated[
         str | None,
@@ -38,7 +38,7 @@ def export(
         ),
     ] = None,
     what: Annotated[
-        str | None, choice(WHATS, "--what", help="What to export; by default the first that the format holds.")
+        str | None, choice(WHATS, "--what", help="What to export.", default="the first that the format holds")
     ] = None,
     motion: Annotated[Path | None, typer.Option(help="Motion file to use instead of the avatar's own clips.")] = None,
     mapping: Annotated[
@@ -50,7 +50,7 @@ def export(
     ] = None,
     axes: Annotated[
         str | None,
-        choice(AXES, "--axes", help="Upward axis of splats; by default what most viewers of the format expect."),
+        choice(AXES, "--axes", help="Upward axis of splats.", default="what most viewers of the format expect"),
     ] = None,
 ) -> None:
     """Export frames of FILE for other programs.

@@ -1,5 +1,6 @@
 """Ends a command on bad input: one sentence on standard error and exit status 1."""
 
+import inspect
 import sys
 from collections.abc import Callable
 from typing import NoReturn
@@ -17,7 +18,7 @@ def run_command(command: Callable[..., None]) -> None:
     An InputError, or a package that is not installed, ends it with one sentence.
     """
     app = typer.Typer()  # adds --install-completion and --show-completion
-    app.command()(with_common_options(command))
+    app.command(help=_prose(command))(with_common_options(command))
     _run(app)
 
 
@@ -26,8 +27,13 @@ def run_commands(about: str, *commands: Callable[..., None]) -> None:
     app = typer.Typer()
     app.callback(help=about)(with_version)
     for command in commands:
-        app.command()(with_common_options(command))
+        app.command(help=_prose(command))(with_common_options(command))
     _run(app)
+
+
+def _prose(command: Callable[..., None]) -> str:
+    """The docstring of a command with each paragraph on one line, which the terminal breaks at its own width."""
+    return "\n\n".join(" ".join(paragraph.split()) for paragraph in (inspect.getdoc(command) or "").split("\n\n"))
 
 
 def _run(app: typer.Typer) -> None:

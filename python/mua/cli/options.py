@@ -73,10 +73,15 @@ def command_options(
 def _typed(argument: inspect.Parameter, kind: Any, option: Option) -> Any:
     """The type of a terminal's value; an argument without a name is a path."""
     if takes_several(kind):
-        return list[Path] if takes_path(kind) else list[float] if takes_numbers(kind) else list[str]
+        return {"path": list[Path], "float": list[float], "str": list[str]}[_element(kind)]
     if argument.kind is argument.POSITIONAL_OR_KEYWORD or takes_path(kind):
         return Path if argument.default is argument.empty or argument.default is not None else Path | None
     return str if option.choices else kind
+
+
+def _element(kind: Any) -> str:
+    """What --help calls one value of an option that may be repeated."""
+    return "path" if takes_path(kind) else "float" if takes_numbers(kind) else "str"
 
 
 def _described(argument: inspect.Parameter, kind: Any, option: Option, titles: Mapping[str, str]) -> Any:
@@ -88,7 +93,8 @@ def _described(argument: inspect.Parameter, kind: Any, option: Option, titles: M
         described = choice(option.choices, name, help=option.help, several=takes_several(kind))
     else:
         flags = [name, option.short] if option.short else [name] if argument.default is False else []
-        described = typer.Option(*flags, help=option.help, show_default=option.default)
+        metavar = f"<{_element(kind)}>" if takes_several(kind) else None
+        described = typer.Option(*flags, help=option.help, show_default=option.default, metavar=metavar)
     described.rich_help_panel = titles.get(argument.name)
     return described
 
@@ -137,12 +143,16 @@ def _silence() -> Iterator[None]:
         yield
 
 
-def choice(names: Sequence[str], *flags: str, help: str, several: bool = False) -> Any:
+def choice(names: Sequence[str], *flags: str, help: str, default: str | bool = True, several: bool = False) -> Any:
     """An option whose value is one of `names`; where it may come several times, its help lists them."""
     listing = f"{help}: {', '.join(names)}." if several else help
     metavar = "NAME" if several else f"<{'|'.join(names)}>"
     return typer.Option(
-        *flags, metavar=metavar, help=listing, autocompletion=lambda incomplete: _begun(names, incomplete)
+        *flags,
+        metavar=metavar,
+        help=listing,
+        show_default=default,
+        autocompletion=lambda incomplete: _begun(names, incomplete),
     )
 
 

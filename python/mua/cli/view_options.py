@@ -88,7 +88,7 @@ class Asked:
         bool | None,
         Option("Whether the camera follows the figure.", default="follows in the window and with --look-at"),
     ] = None
-    stereo: Annotated[bool, Option("Show left and right eye side by side.")] = False
+    stereo: Annotated[bool, Option("Draw left and right eye side by side.")] = False
     ipd: Annotated[float | None, Option("Distance between the eyes in metres.", default=f"{EYE_DISTANCE:g}")] = None
     background: Annotated[
         str | None,

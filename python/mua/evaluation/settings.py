@@ -25,7 +25,7 @@ SYSTEM_NAMES = (
 class EvaluationSettings:
     """What is compared with what, and how."""
 
-    recording: Annotated[Path, Option("Directory of a recording or a capture.", metavar="RECORDING")]
+    recording: Annotated[Path, Option("Folder of a recording or a capture.", metavar="RECORDING")]
     avatars: Annotated[Sequence[Path], Option("Avatar files trained on it.", metavar="AVATARS")] = ()
     _: KW_ONLY
     teacher: Annotated[
@@ -34,7 +34,7 @@ class EvaluationSettings:
     train_on: Annotated[
         Path | None,
         Option(
-            "Recording of the teacher to train systems on, as mua-bake leaves it in its work directory.",
+            "Recording of the teacher to train systems on, as mua-bake leaves it in its --work folder.",
             default="made of the capture's own poses",
         ),
     ] = None
@@ -75,7 +75,7 @@ class EvaluationSettings:
     lpips_weights: Annotated[Path | None, Option("Weights of torchvision's AlexNet or VGG16, to measure LPIPS.")] = None
     seed: Annotated[int, Option("Seed of all random numbers.", least=0)] = 0
     device: Annotated[str | None, Option("Graphics device: its number or part of its name.")] = None
-    output: Annotated[Path, Option("Directory to write to.", short="-o")] = Path("evaluation")
+    output: Annotated[Path, Option("Folder to write to.", short="-o")] = Path("evaluation")
     images: Annotated[
         Path | None,
         Option(

@@ -4,7 +4,11 @@ Metres, Y up; a time code for each exported frame, from 0. Colours are sRGB turn
 the spherical harmonics of splats stay sRGB, as in 3D Gaussian Splatting.
 """
 
-from collections.abc import Iterable
+import errno
+import re
+import zipfile
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -20,6 +24,7 @@ from mua.export.splats import mean_colors, world_splats
 from mua.export.surface import DetailedMesh, SkinnedMesh
 from mua.pose.skeleton import Skeleton
 
+REASON = re.compile(r": '(.*?)'$", re.MULTILINE)  # of each error that the library lists, the first being the cause
 SPLAT_SCHEMA = "ParticleField3DGaussianSplat"  # in OpenUSD 26.03 and later
 
 
@@ -29,64 +34,62 @@ def write_character(path: Path, frames: ExportFrames, mesh: SkinnedMesh | None, 
     `texture` is the name of an image beside the file, which the mesh shows without light; without one it has colours
     at its vertices.
     """
-    stage, name = _stage(path, frames)
-    UsdSkel.Root.Define(stage, name)
-    skeleton = frames.avatar.rig.skeleton
-    joints = joint_paths(skeleton)
-    prim = UsdSkel.Skeleton.Define(stage, f"{name}/Skeleton")
-    prim.CreateJointsAttr(joints)
-    prim.CreateBindTransformsAttr(_usd_matrices(bind_matrices(skeleton)))
-    prim.CreateRestTransformsAttr(_usd_matrices(matrices(skeleton.bind_rotations, skeleton.bind_translations)))
-    animation = _animation(stage, f"{name}/Skeleton/Animation", joints, frames)
-    UsdSkel.BindingAPI.Apply(prim.GetPrim()).CreateAnimationSourceRel().SetTargets([animation.GetPath()])
-    if mesh is not None:
-        skinned = _skinned(stage, f"{name}/Mesh", prim, mesh)
-        if texture is not None:
-            _unlit(stage, f"{name}/Material", skinned, texture)
-    stage.Save()
+    with _stage(path, frames) as (stage, name):
+        UsdSkel.Root.Define(stage, name)
+        skeleton = frames.avatar.rig.skeleton
+        joints = joint_paths(skeleton)
+        prim = UsdSkel.Skeleton.Define(stage, f"{name}/Skeleton")
+        prim.CreateJointsAttr(joints)
+        prim.CreateBindTransformsAttr(_usd_matrices(bind_matrices(skeleton)))
+        prim.CreateRestTransformsAttr(_usd_matrices(matrices(skeleton.bind_rotations, skeleton.bind_translations)))
+        animation = _animation(stage, f"{name}/Skeleton/Animation", joints, frames)
+        UsdSkel.BindingAPI.Apply(prim.GetPrim()).CreateAnimationSourceRel().SetTargets([animation.GetPath()])
+        if mesh is not None:
+            skinned = _skinned(stage, f"{name}/Mesh", prim, mesh)
+            if texture is not None:
+                _unlit(stage, f"{name}/Material", skinned, texture)
 
 
 def write_geometry(path: Path, frames: ExportFrames, posed: Iterable[Splats], mesh: DetailedMesh) -> None:
     """The detailed geometry of every frame, vertex by vertex."""
-    stage, name = _stage(path, frames)
-    UsdGeom.Xform.Define(stage, name)
-    prim = UsdGeom.Mesh.Define(stage, f"{name}/Geometry")
-    _topology(prim, mesh.faces)
-    colors = UsdGeom.PrimvarsAPI(prim).CreatePrimvar(
-        "displayColor", Sdf.ValueTypeNames.Color3fArray, UsdGeom.Tokens.vertex
-    )
-    for time, splats in enumerate(posed):
-        prim.GetPointsAttr().Set(_vectors(splats.centres), time)
-        prim.GetExtentAttr().Set(_vectors(_extent(splats.centres)), time)
-        colors.Set(_vectors(_display(mean_colors(splats.sh))), time)
-    stage.Save()
+    with _stage(path, frames) as (stage, name):
+        UsdGeom.Xform.Define(stage, name)
+        prim = UsdGeom.Mesh.Define(stage, f"{name}/Geometry")
+        _topology(prim, mesh.faces)
+        colors = UsdGeom.PrimvarsAPI(prim).CreatePrimvar(
+            "displayColor", Sdf.ValueTypeNames.Color3fArray, UsdGeom.Tokens.vertex
+        )
+        for time, splats in enumerate(posed):
+            prim.GetPointsAttr().Set(_vectors(splats.centres), time)
+            prim.GetExtentAttr().Set(_vectors(_extent(splats.centres)), time)
+            colors.Set(_vectors(_display(mean_colors(splats.sh))), time)
 
 
 def write_splats(path: Path, frames: ExportFrames, posed: Iterable[Splats]) -> None:
     """The splats of every frame; errors: InputError where the library is too old to know splats."""
     if not hasattr(UsdVol, SPLAT_SCHEMA):
         raise InputError(f"{path}: splats in USD need usd-core 26.3 or later, found {Usd.GetVersion()}")
-    stage, name = _stage(path, frames)
-    UsdGeom.Xform.Define(stage, name)
-    prim = UsdVol.ParticleField3DGaussianSplat.Define(stage, f"{name}/Splats")
-    prim.CreateRadianceSphericalHarmonicsDegreeAttr(1)
-    for time, each in enumerate(posed):
-        splats = world_splats(each)
-        reach = 3 * splats.scales.max(axis=1, keepdims=True)
-        box = np.concatenate([splats.centres - reach, splats.centres + reach])
-        prim.GetPositionsAttr().Set(_vectors(splats.centres), time)
-        prim.GetOrientationsAttr().Set(_quaternions(splats.rotations), time)
-        prim.GetScalesAttr().Set(_vectors(splats.scales), time)
-        prim.GetOpacitiesAttr().Set(Vt.FloatArray.FromNumpy(splats.opacities.astype(np.float32)), time)
-        prim.GetRadianceSphericalHarmonicsCoefficientsAttr().Set(_vectors(splats.sh.reshape(-1, 3)), time)
-        prim.GetExtentAttr().Set(_vectors(_extent(box)), time)
-    stage.Save()
+    with _stage(path, frames) as (stage, name):
+        UsdGeom.Xform.Define(stage, name)
+        prim = UsdVol.ParticleField3DGaussianSplat.Define(stage, f"{name}/Splats")
+        prim.CreateRadianceSphericalHarmonicsDegreeAttr(1)
+        for time, each in enumerate(posed):
+            splats = world_splats(each)
+            reach = 3 * splats.scales.max(axis=1, keepdims=True)
+            box = np.concatenate([splats.centres - reach, splats.centres + reach])
+            prim.GetPositionsAttr().Set(_vectors(splats.centres), time)
+            prim.GetOrientationsAttr().Set(_quaternions(splats.rotations), time)
+            prim.GetScalesAttr().Set(_vectors(splats.scales), time)
+            prim.GetOpacitiesAttr().Set(Vt.FloatArray.FromNumpy(splats.opacities.astype(np.float32)), time)
+            prim.GetRadianceSphericalHarmonicsCoefficientsAttr().Set(_vectors(splats.sh.reshape(-1, 3)), time)
+            prim.GetExtentAttr().Set(_vectors(_extent(box)), time)
 
 
 def package(path: Path, stage: Path) -> None:
-    """A .usdz of a stage and the files that it refers to; errors: InputError where the library fails."""
-    if not UsdUtils.CreateNewUsdzPackage(Sdf.AssetPath(str(stage)), str(path)):
-        raise InputError(f"{path}: the USD library could not make the package")
+    """A .usdz of a stage and the files that it refers to; errors: OSError where the library fails."""
+    made = UsdUtils.CreateNewUsdzPackage(Sdf.AssetPath(str(stage)), str(path))
+    if not made or not zipfile.is_zipfile(path):  # it tells nothing of a full disk
+        raise OSError(errno.EIO, "the USD library could not write it all")
 
 
 def joint_paths(skeleton: Skeleton) -> list[str]:
@@ -101,9 +104,23 @@ def joint_paths(skeleton: Skeleton) -> list[str]:
     return paths
 
 
-def _stage(path: Path, frames: ExportFrames) -> tuple[Usd.Stage, str]:
-    """A new stage and the path of its default prim, which is still to be defined."""
-    stage = Usd.Stage.CreateNew(str(path))
+@contextmanager
+def _stage(path: Path, frames: ExportFrames) -> Iterator[tuple[Usd.Stage, str]]:
+    """A new stage and the path of its default prim, which is still to be defined; saved at the end.
+
+    Errors: OSError where the system refuses to write, in the words of the library.
+    """
+    try:
+        stage = Usd.Stage.CreateNew(str(path))
+        yield stage, _begin(stage, frames)
+        stage.Save()
+    except Tf.ErrorException as error:
+        said = REASON.search(str(error))
+        raise OSError(errno.EIO, said[1] if said else "the USD library failed") from error
+
+
+def _begin(stage: Usd.Stage, frames: ExportFrames) -> str:
+    """Say units, axes and times of a new stage; the path of its default prim."""
     UsdGeom.SetStageUpAxis(stage, UsdGeom.Tokens.y)
     UsdGeom.SetStageMetersPerUnit(stage, 1)
     stage.SetTimeCodesPerSecond(frames.rate)
@@ -112,7 +129,7 @@ def _stage(path: Path, frames: ExportFrames) -> tuple[Usd.Stage, str]:
     stage.SetEndTimeCode(len(frames.numbers) - 1)
     name = f"/{Tf.MakeValidIdentifier(frames.avatar.name or 'avatar')}"
     stage.SetDefaultPrim(stage.DefinePrim(name))
-    return stage, name
+    return name
 
 
 def _animation(stage: Usd.Stage, path: str, joints: list[str], frames: ExportFrames) -> UsdSkel.Animation:

@@ -35,9 +35,10 @@ from mua.player.scene import CLEAR, Scene
 from mua.player.schedule import DecodeSchedule, Moment
 from mua.player.shot import GROUND, Look, eyes_of
 from mua.player.splats import SplatFrame
-from mua.player.viewpoint import Viewpoint, framing
+from mua.player.viewpoint import Viewpoint, directions, framing
 from mua.pose.clip import Clip
 from mua.pose.skeleton import Pose
+from mua.rig.bounds import way_out
 
 SMOOTHING = 0.1  # share of the newest frame in the times on screen
 ROUND = np.linspace(0, 2 * np.pi, 16, endpoint=False)  # radians at which a figure is framed, so that all its sides fit
@@ -294,7 +295,15 @@ class Session:
         sides = ROUND if self.turning else np.zeros(1)
         azimuths = self._stage.front(self._clip) + shot.azimuth + sides
         view = framing(self._stage.bounds, screen, azimuths=azimuths, elevation=shot.elevation).nearer(shot.zoom)
-        return view if self._stage.focus is None else replace(view, target=np.zeros(3))
+        middle = view.target
+        if self._stage.focus is not None:
+            view, middle = replace(view, target=np.zeros(3)), self._followed() - self._root()
+        return view.outside(way_out(self._stage.bounds, middle, directions(azimuths, shot.elevation)).max())
+
+    def _root(self) -> Array:
+        """Where the root joint is, [3] metres."""
+        skeleton, shown = self._stage.rig.skeleton, self._pose_shown
+        return np.asarray(skeleton.world(shown.rotations, shown.translations)[1][skeleton.root])
 
     def _note(self, milliseconds: Mapping[str, float]) -> None:
         """Smooth the times; a kernel that did not run keeps its last time."""

@@ -12,9 +12,9 @@ from mua.motion.facing import front_of
 from mua.player.focus import find_focus
 from mua.player.levels import FULL, Wanted
 from mua.player.toggles import Toggles
-from mua.player.viewpoint import Viewpoint, framing
+from mua.player.viewpoint import Viewpoint, directions, framing
 from mua.pose.clip import Clip
-from mua.rig.bounds import frame_boxes, root_positions, union
+from mua.rig.bounds import frame_boxes, root_positions, union, way_out
 from mua.rig.rig import Rig
 
 GROUND = np.array([1.0, 0, 1])  # a camera that follows keeps its height
@@ -53,11 +53,13 @@ def film(shot: Shot, rig: Rig, clip: Clip) -> list[tuple[Camera, ...]]:
 
     Errors: InputError where the rig has no such joint to look at.
     """
-    framed, moved = _framed(shot, rig, clip)
+    boxes = frame_boxes(rig, clip)
+    framed, moved = _framed(shot, rig, clip, boxes)
     turned = shot.turning / clip.rate * np.arange(len(clip))
     azimuths = front_of(rig.skeleton, clip.rotations[0], clip.translations[0]) + shot.azimuth + turned
     view = framing(framed, shot.screen, azimuths=azimuths, elevation=shot.elevation).nearer(shot.zoom)
     target = np.zeros(3) if shot.look_at else view.target
+    view = view.outside(way_out(boxes, target + moved, directions(azimuths, shot.elevation)).max())
     views = [replace(view, target=target + at, azimuth=a) for at, a in zip(moved, azimuths, strict=True)]
     return [eyes_of(view, shot.screen, shot.eyes) for view in views]
 
@@ -68,9 +70,14 @@ def eyes_of(view: Viewpoint, screen: tuple[int, int], eyes: float | None) -> tup
     return (camera,) if eyes is None else stereo(camera, eyes)
 
 
-def _framed(shot: Shot, rig: Rig, clip: Clip) -> tuple[Array, Array]:
+def _framed(
+    shot: Shot,
+    rig: Rig,
+    clip: Clip,
+    boxes: Array,  # [F, 2, 3] of its frames, metres
+) -> tuple[Array, Array]:
     """The box [2, 3] to frame, and the path of the camera's target [F, 3], metres."""
-    boxes, roots = frame_boxes(rig, clip), root_positions(rig, clip)
+    roots = root_positions(rig, clip)
     if shot.look_at is not None:
         places = find_focus(rig, shot.look_at).places(rig.skeleton, clip.rotations, clip.translations)
         return union(boxes - roots[:, None]), places if shot.follow else np.broadcast_to(places[0], places.shape)

@@ -1,5 +1,6 @@
 """Videos and animations from images, written atomically."""
 
+import re
 from collections.abc import Iterator
 from contextlib import suppress
 from itertools import chain
@@ -13,6 +14,7 @@ from mua.arrays import Array
 from mua.errors import InputError
 from mua.files.write import replacing
 
+PART = re.compile(r"\[\S+ @ 0x[0-9a-f]+\]")  # by which the encoder names its parts
 BT709 = "bt709"  # colour space that players assume for videos larger than SD; the encoder is set to it
 MARKED = ("-colorspace", BT709, "-color_primaries", BT709, "-color_trc", BT709)
 SCALED = f"scale=out_color_matrix={BT709}:out_range=tv"
@@ -64,4 +66,5 @@ def write_video(
                 encoder.stdin.write(picture.tobytes())
         if encoder.returncode:
             log.seek(0)
-            raise InputError(f"{path}: the encoder stopped: {' '.join(log.read().decode().split())}")
+            said = PART.sub("", log.read().decode()).split()
+            raise InputError(f"{path}: the encoder stopped: {' '.join(said)}")

@@ -22,6 +22,7 @@ class Viewpoint:
     azimuth: float = 0.0  # radians, as mua.avatar.camera.orbit
     elevation: float = 0.0
     framed: float = 3.5  # metres from which all of the figure is seen; those of a person
+    fov: float = FOV  # vertical, radians
 
     def turned(self, right: float, down: float) -> "Viewpoint":
         """The viewpoint after a drag by this number of pixels: the figure follows the mouse."""
@@ -37,6 +38,13 @@ class Viewpoint:
         """The viewpoint at a fraction of the distance, so that the middle appears larger by this factor."""
         return self.zoomed(float(np.log(times) / np.log(ZOOM_STEP)))
 
+    def outside(self, reach: float) -> "Viewpoint":
+        """The viewpoint at least this number of metres from its target; a longer lens keeps the middle as large."""
+        if self.distance >= reach:
+            return self
+        fov = 2 * np.arctan(np.tan(self.fov / 2) * self.distance / reach)
+        return replace(self, distance=reach, fov=float(fov))
+
     def gone_round(self, angle: float) -> "Viewpoint":
         """Camera and target turned by this angle in radians about the vertical, as when the figure itself turns."""
         c, s = np.cos(angle), np.sin(angle)
@@ -45,7 +53,7 @@ class Viewpoint:
 
     def panned(self, right: float, down: float, *, height: int) -> "Viewpoint":
         """The viewpoint after a panning drag in an image of `height`: the target stays under the mouse."""
-        metres = 2 * np.tan(FOV / 2) * self.distance / height
+        metres = 2 * np.tan(self.fov / 2) * self.distance / height
         across, up, _ = self.camera((height, height)).view[:3, :3]
         return replace(self, target=self.target + metres * (down * up - right * across))
 
@@ -54,8 +62,17 @@ class Viewpoint:
         at = orbit(np.stack([self.target] * 2), screen=screen, azimuth=self.azimuth, elevation=self.elevation)
         view = at.view.copy()
         view[:3, 3] = [0, 0, -self.distance] - view[:3, :3] @ self.target
-        projection = perspective(FOV, aspect=screen[0] / screen[1], near=near_plane(self.distance))
+        projection = perspective(self.fov, aspect=screen[0] / screen[1], near=near_plane(self.distance))
         return replace(at, view=view, projection=projection)
+
+
+def directions(
+    azimuths: Array,  # [N] radians, as mua.avatar.camera.orbit
+    elevation: float,
+) -> Array:
+    """Where a camera is from its target, [N, 3] of length 1."""
+    flat = np.cos(elevation)
+    return np.stack([flat * np.sin(azimuths), np.full_like(azimuths, np.sin(elevation)), flat * np.cos(azimuths)], -1)
 
 
 def framing(

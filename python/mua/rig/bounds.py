@@ -52,6 +52,18 @@ def root_positions(rig: Rig, clip: Clip) -> Array:
     return np.asarray(placed[:, rig.skeleton.root])
 
 
+def way_out(
+    boxes: Array,  # [..., 2, 3]
+    points: Array,  # [..., 3]
+    directions: Array,  # [..., 3]
+) -> Array:
+    """How far along a direction a ray leaves a box, [...]; 0 where it does not meet the box."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        sides = (boxes - points[..., None, :]) / directions[..., None, :]  # NaN where a ray runs along a side
+    entry, leave = np.nanmax(sides.min(axis=-2), axis=-1), np.nanmin(sides.max(axis=-2), axis=-1)
+    return np.where(entry <= leave, np.maximum(leave, 0.0), 0.0)
+
+
 def union(
     boxes: Array,  # [B, 2, 3]
 ) -> Array:

@@ -27,7 +27,7 @@ TYPES = {
 }
 BINARY = "application/octet-stream"
 BLOCK = 1 << 18  # bytes that are read at once
-RANGE = re.compile(r"bytes=(\d*)-(\d*)")
+RANGE = re.compile(r"bytes=(\d{0,18})-(\d{0,18})")  # longer numbers are no file's
 LONGEST_REPLY = 32  # bytes of what a page sends
 
 
@@ -174,8 +174,8 @@ class _Handler(BaseHTTPRequestHandler):
     def _send(self, content: Content, first: int, end: int) -> None:
         try:
             with BytesIO(content) if isinstance(content, bytes) else content.open("rb") as source:
-                _copy(source, self.wfile, first, end)
-        except (ConnectionError, TimeoutError):  # the browser went away
+                self.close_connection |= not _copy(source, self.wfile, first, end)
+        except OSError:  # the browser went away, or the file did
             self.close_connection = True
 
     def _refuse(self, status: HTTPStatus, headers: dict[str, str] | None = None) -> None:
@@ -188,9 +188,11 @@ class _Handler(BaseHTTPRequestHandler):
             self.wfile.write(body)
 
 
-def _copy(source: IO[bytes], target: BufferedIOBase, first: int, end: int) -> None:
+def _copy(source: IO[bytes], target: BufferedIOBase, first: int, end: int) -> bool:
+    """Copy a part; whether all of it was there, which a file that was replaced meanwhile may not have."""
     source.seek(first)
     left = end - first
     while left > 0 and (block := source.read(min(left, BLOCK))):
         target.write(block)
         left -= len(block)
+    return left <= 0

@@ -36,7 +36,7 @@ export function sourceOf(source) {
 export class Download {
   constructor(/** @type {string} */ url) {
     this.url = url;
-    this.name = decodeURIComponent(new URL(url).pathname.split("/").pop() || url);
+    this.name = nameIn(url);
     this.got = 0;
     this.since = this.last = 0; // when it began and when bytes came last, milliseconds
     this.total = 0; // 0 where the server does not say
@@ -137,6 +137,16 @@ export class Download {
     return new AvatarError(
       `${this.name} was not fetched whole: the connection broke after ${megabytes(this.got)} MB${then}.`,
     );
+  }
+}
+
+/** The file's name in an address; as it is written there where it is no text in UTF-8. */
+function nameIn(/** @type {string} */ url) {
+  const last = new URL(url).pathname.split("/").pop() || url;
+  try {
+    return decodeURIComponent(last);
+  } catch {
+    return last;
   }
 }
 

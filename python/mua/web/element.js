@@ -71,7 +71,7 @@ export class MuaAvatar extends Attributed {
   constructor() {
     super();
     const root = this.attachShadow({ mode: "open" });
-    root.adoptedStyleSheets = [look()];
+    root.adoptedStyleSheets = [look(document)];
     this.#controls = new Controls(root, this);
     this.#loading = new Loading(this, this.#controls, {
       opened: (player) => this.#begin(player),
@@ -103,6 +103,12 @@ export class MuaAvatar extends Attributed {
       this.#asked.drop();
       this.#loading.dispose();
     });
+  }
+
+  /** In the document of a frame or of another window, such as a picture in picture. */
+  adoptedCallback() {
+    const { shadowRoot, ownerDocument } = this;
+    if (shadowRoot && ownerDocument.defaultView) shadowRoot.adoptedStyleSheets = [look(ownerDocument)]; // no template's
   }
 
   attributeChangedCallback(
@@ -440,6 +446,7 @@ export class MuaAvatar extends Attributed {
   #tick(/** @type {number} */ seconds) {
     if (this.player?.playing && !lessMotion()) this.#stage.orbit(seconds);
     this.#controls.tick();
+    this.#fit(); // no observer hears of a display of another density
   }
 
   /** Draw what has changed. */

@@ -1,13 +1,15 @@
 // How the element looks, light and dark, wide and narrow.
 
-/** @type {CSSStyleSheet | undefined} */
-let sheet;
+/** @type {WeakMap<Document, CSSStyleSheet>} */
+const sheets = new WeakMap();
 
-/** The sheet that all elements share; made late, so that importing this module needs no browser. */
-export function look() {
+/** The sheet that all elements of a document share: browsers take none of another document's. */
+export function look(/** @type {Document} */ of) {
+  let sheet = sheets.get(of);
   if (!sheet) {
-    sheet = new CSSStyleSheet();
+    sheet = new (of.defaultView ?? globalThis).CSSStyleSheet();
     sheet.replaceSync(RULES);
+    sheets.set(of, sheet);
   }
   return sheet;
 }

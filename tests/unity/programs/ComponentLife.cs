@@ -105,6 +105,7 @@ namespace Mua
             Say("state", shown.State);
             shown.Load(File.ReadAllBytes(files[2]), "downloaded");
             Settle(shown);
+            typeof(AvatarRenderer).GetField("avatar", Hidden).SetValue(shown, null);
             typeof(AvatarRenderer).GetField("file", Hidden).SetValue(shown, files[0]);
             StandIns.Messages.Send(shown, "OnValidate");
             Frames(1);
@@ -186,12 +187,23 @@ namespace Mua
         /// <summary>Settings of a component, and those of one that Unity makes of its serialized fields.</summary>
         private static void IsCopied()
         {
-            AvatarRenderer shown = Show(files[0]), copy = Make("copy").AddComponent<AvatarRenderer>();
+            AvatarRenderer shown = Show(files[0]);
             shown.Speed = 0.5f;
             shown.Views = AvatarViews.Template;
             shown.Level = AvatarLevel.Half;
             shown.SpreadDecode = false;
             shown.Rig = Make("rig").transform;
+            AvatarRenderer copy = Clone(shown);
+            Until(copy);
+            Say("copy", copy.State + " " + copy.Speed + " " + copy.Views + " " + copy.Level + " " + copy.SpreadDecode + " " + (copy.Rig == shown.Rig));
+        }
+
+        /// <summary>What Unity makes of a component's serialized fields.</summary>
+        private static AvatarRenderer Clone(AvatarRenderer shown)
+        {
+            GameObject clone = Make("clone");
+            clone.SetActive(false);
+            AvatarRenderer copy = clone.AddComponent<AvatarRenderer>();
             foreach (FieldInfo field in typeof(AvatarRenderer).GetFields(Hidden | BindingFlags.Public))
             {
                 if (field.IsPublic || Attribute.IsDefined(field, typeof(SerializeField)))
@@ -199,10 +211,26 @@ namespace Mua
                     field.SetValue(copy, field.GetValue(shown));
                 }
             }
-            StandIns.Messages.Send(copy, "OnValidate");
-            Frames(1);
-            Until(copy);
-            Say("copy", copy.State + " " + copy.Speed + " " + copy.Views + " " + copy.Level + " " + copy.SpreadDecode + " " + (copy.Rig == shown.Rig));
+            clone.SetActive(true);
+            return copy;
+        }
+
+        /// <summary>Clones of an avatar of bytes, of which one waits while all others go or show something else.</summary>
+        private static void IsClonedFromBytes()
+        {
+            AvatarRenderer shown = Show(files[0]);
+            shown.Load(File.ReadAllBytes(files[1]), "downloaded");
+            AvatarAsset made = shown.Avatar;
+            AvatarRenderer first = Clone(shown), second = Clone(shown);
+            Settle(first);
+            second.gameObject.SetActive(false);
+            UnityEngine.Object.DestroyImmediate(shown.gameObject);
+            first.Load(files[0]);
+            Settle(first);
+            second.gameObject.SetActive(true);
+            Settle(second);
+            UnityEngine.Object.DestroyImmediate(second.gameObject);
+            Say("kept", made != null);
         }
 
         /// <summary>Two avatars, the clip of one of which ends early.</summary>

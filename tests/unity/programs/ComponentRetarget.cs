@@ -4,6 +4,7 @@ using System;
 using System.Collections.Generic;
 using System.IO;
 using System.Linq;
+using System.Reflection;
 using Mua.Format;
 using Mua.Motion;
 using StandIns;
@@ -96,6 +97,28 @@ namespace Mua
             rig.BecomeHumanoid();
             rig.Move(3);
             SayPoses(rig, rig.Root.gameObject.AddComponent<RetargetedRig>());
+        }
+
+        /// <summary>A clone of a rig that moves: Unity gives it the serialized fields, with transforms of its own.</summary>
+        private static void RetargetsClone()
+        {
+            RetargetedRig first = new OtherRig().Root.gameObject.AddComponent<RetargetedRig>();
+            var clone = new OtherRig();
+            clone.Move(3);
+            clone.Root.gameObject.SetActive(false);
+            RetargetedRig second = clone.Root.gameObject.AddComponent<RetargetedRig>();
+            FieldInfo rest = typeof(RetargetedRig).GetField("rest", Hidden);
+            var copy = new RigRest(clone.Root);
+            foreach (FieldInfo field in typeof(RigRest).GetFields(Hidden).Where(field => field.FieldType != typeof(Transform[])))
+            {
+                if (Attribute.IsDefined(field, typeof(SerializeField)))
+                {
+                    field.SetValue(copy, field.GetValue(rest.GetValue(first)));
+                }
+            }
+            rest.SetValue(second, Attribute.IsDefined(rest, typeof(SerializeField)) ? copy : null);
+            clone.Root.gameObject.SetActive(true);
+            SayPoses(clone, second);
         }
 
         private static void RetargetsMapped()

@@ -176,6 +176,8 @@ namespace Mua.Editor
             SeenBy(view, game);
             Stages.Opened.Clear();
             SeenBy(view, game);
+            UnityEditor.SceneVisibilityManager.instance.Hide(other.gameObject, false);
+            SayShadow();
             UnityEditor.SceneVisibilityManager.instance.Hide(opened.gameObject, false);
             SeenBy(view, game);
             UnityEditor.SceneVisibilityManager.instance.ShowAll();

@@ -69,6 +69,14 @@ test("a server that fails is a sentence with its answer, at first and while the 
   await assert.rejects(fetched([200, 0, 40], [500]), /the connection broke after 0.0 MB; then the server answers 500/);
 });
 
+test("an address that is no text in UTF-8 is named as it is written", async () => {
+  answers = [[404]];
+  await assert.rejects(
+    new Download("http://host/100%.muaavatar").whole(() => {}),
+    /^AvatarError: 100%.muaavatar cannot/,
+  );
+});
+
 test("a server out of reach is a sentence", async () => {
   const { fetch } = globalThis;
   globalThis.fetch = () => Promise.reject(new TypeError("Failed to fetch"));

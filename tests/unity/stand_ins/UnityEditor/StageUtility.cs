@@ -1,6 +1,11 @@
-// Stand-in. Source: Unity 6000.0 scripting reference, StageUtility, SceneVisibilityManager.
+// Stand-in. Source: Unity 6000.0 scripting reference, StageUtility, SceneVisibilityManager, SceneCullingMasks.
 namespace UnityEditor.SceneManagement
 {
+    public static class SceneCullingMasks
+    {
+        public const ulong GameViewObjects = 1UL << 63;
+    }
+
     public static class StageUtility
     {
         public static bool IsGameObjectRenderedByCamera(UnityEngine.GameObject gameObject, UnityEngine.Camera camera)

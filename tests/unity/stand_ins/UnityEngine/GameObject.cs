@@ -27,6 +27,7 @@ namespace UnityEngine
         public T GetComponentInChildren<T>() { return gameObject.GetComponentInChildren<T>(); }
         public T GetComponentInParent<T>() { return gameObject.GetComponentInParent<T>(); }
         public T[] GetComponentsInChildren<T>() { return gameObject.GetComponentsInChildren<T>(); }
+        public T[] GetComponentsInChildren<T>(bool includeInactive) { return gameObject.GetComponentsInChildren<T>(includeInactive); }
     }
 
     public class Behaviour : Component
@@ -153,7 +154,7 @@ namespace UnityEngine
 
         public Transform transform { get; private set; }
         public int layer { get; set; }
-        public ulong sceneCullingMask { get { return StandIns.Stages.Opened.Contains(this) ? 1UL : 2UL; } } // of the opened prefab, of the scene
+        public ulong sceneCullingMask { get { return StandIns.Stages.Opened.Contains(this) ? 1UL : 1UL << 63 | 2UL; } } // of the opened prefab; of the game and the scene view
         public string tag { get; set; }
         public bool activeSelf { get { return active; } }
         public bool activeInHierarchy
@@ -212,10 +213,11 @@ namespace UnityEngine
             }
             return default(T);
         }
-        public T[] GetComponentsInChildren<T>()
+        public T[] GetComponentsInChildren<T>() { return GetComponentsInChildren<T>(false); }
+        public T[] GetComponentsInChildren<T>(bool includeInactive)
         {
             List<T> found = new List<T>();
-            Collect(transform, found);
+            Collect(transform, found, includeInactive);
             return found.ToArray();
         }
         public static GameObject Find(string name) { return All.Find(g => g.name == name && g.activeInHierarchy); }
@@ -246,15 +248,15 @@ namespace UnityEngine
                 transform.GetChild(i).gameObject.RefreshAll();
         }
 
-        private static void Collect<T>(Transform at, List<T> found)
+        private static void Collect<T>(Transform at, List<T> found, bool inactive)
         {
-            if (!at.gameObject.activeInHierarchy)
+            if (!inactive && !at.gameObject.activeInHierarchy)
                 return;
             foreach (Component component in at.gameObject.Components)
                 if (component is T)
                     found.Add((T)(object)component);
             for (int i = 0; i < at.childCount; i++)
-                Collect(at.GetChild(i), found);
+                Collect(at.GetChild(i), found, inactive);
         }
     }
 

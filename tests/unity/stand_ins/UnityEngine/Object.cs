@@ -20,6 +20,8 @@ namespace UnityEngine
 #endif
     public enum FindObjectsSortMode { None, InstanceID }
 
+    public enum FindObjectsInactive { Exclude, Include }
+
     public class Object
     {
         private static int lastId;
@@ -52,21 +54,26 @@ namespace UnityEngine
         public static void DontDestroyOnLoad(Object target) { }
         public static T FindAnyObjectByType<T>() where T : Object
         {
-            T[] found = Find<T>();
+            T[] found = Find<T>(FindObjectsInactive.Exclude);
             return found.Length > 0 ? found[0] : null;
         }
 #if UNITY_6000_4_OR_NEWER
-        public static T[] FindObjectsByType<T>() where T : Object { return Find<T>(); }
+        public static T[] FindObjectsByType<T>(FindObjectsInactive findObjectsInactive) where T : Object { return Find<T>(findObjectsInactive); }
         [Obsolete("FindObjectsByType with FindObjectsSortMode parameter has been deprecated.", false)]
 #endif
-        public static T[] FindObjectsByType<T>(FindObjectsSortMode sortMode) where T : Object { return Find<T>(); }
+        public static T[] FindObjectsByType<T>(FindObjectsInactive findObjectsInactive, FindObjectsSortMode sortMode) where T : Object { return Find<T>(findObjectsInactive); }
 
-        private static T[] Find<T>() where T : Object
+#if UNITY_6000_4_OR_NEWER
+        [Obsolete("FindObjectsByType with FindObjectsSortMode parameter has been deprecated.", false)]
+#endif
+        public static T[] FindObjectsByType<T>(FindObjectsSortMode sortMode) where T : Object { return Find<T>(FindObjectsInactive.Exclude); }
+
+        private static T[] Find<T>(FindObjectsInactive inactive) where T : Object
         {
             List<T> found = new List<T>();
             foreach (GameObject gameObject in GameObject.All)
                 foreach (Component component in gameObject.Components)
-                    if (component is T && gameObject.activeInHierarchy)
+                    if (component is T && (gameObject.activeInHierarchy || inactive == FindObjectsInactive.Include))
                         found.Add((T)(Object)component);
             return found.ToArray();
         }
