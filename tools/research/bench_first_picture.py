@@ -43,7 +43,7 @@ class Line:
         self.rate = rate  # bytes a second; 0 is as fast as it goes
         self.carried: list[tuple[float, int]] = []  # epoch milliseconds, bytes
 
-    def copy(self, source: IO[bytes], target: BufferedIOBase, first: int, end: int) -> None:
+    def copy(self, source: IO[bytes], target: BufferedIOBase, first: int, end: int) -> bool:
         """In place of the server's own."""
         source.seek(first)
         slow = self.rate if getattr(source, "name", "").endswith(".muaavatar") else 0
@@ -53,6 +53,7 @@ class Line:
                 time.sleep(len(block) / slow)
             if getattr(source, "name", "").endswith(".muaavatar"):
                 self.carried.append((1000 * time.time(), len(block)))
+        return True
 
     def until(self, when: float) -> int:
         return sum(size for at, size in self.carried if at <= when)
