@@ -14,15 +14,15 @@ ROWS, COLUMNS = 12, 20
 def sheet(widths: Array) -> tuple[Array, Array, Array]:
     """UV and space of a flat sheet, [F, 3, 2] and [F, 3, 3], and its nodes [F, 3].
 
-    Its cells are as large as each other, but as wide in the texture as `widths` [ROWS, COLUMNS] says.
+    Its cells are as large as each other, but as wide in the texture as `widths` [ROWS, COLUMNS(, 2)] says.
     """
     x, y = np.meshgrid(np.arange(COLUMNS + 1.0), np.arange(ROWS + 1.0))
     faces = grid_faces(ROWS, COLUMNS)
     places = np.stack([x, y, 0 * x], axis=-1).reshape(-1, 3)[faces]
-    uv = places[..., :2].copy()
+    uv = places[..., :2]
     middle = uv.mean(axis=1, keepdims=True)
-    uv[:] = middle + (uv - middle) * np.tile(widths.ravel(), 2)[:, None, None]  # each triangle shrunk in its place
-    return uv / COLUMNS, places, faces
+    shrunk = np.tile(widths.reshape(ROWS * COLUMNS, -1), (2, 1))  # of each triangle, in its place
+    return (middle + (uv - middle) * shrunk[:, None]) / COLUMNS, places, faces
 
 
 def found(widths: Array) -> Array:
@@ -49,3 +49,10 @@ def test_a_large_patch_counts(width: float) -> None:
     widths = np.ones((ROWS, COLUMNS))
     widths[3:9, 4:14] = width
     assert found(widths)[4:8, 5:13].all()
+
+
+def test_a_large_patch_drawn_too_short_in_one_direction_alone_counts() -> None:
+    widths = np.ones((ROWS, COLUMNS, 2))
+    widths[4:7, 8:11, 1] = 0.3  # 0.3 of the area are texels enough, but each would be three times as long
+    assert found(widths)[5, 9]
+    assert not found(np.maximum(widths, 0.6)).any()

@@ -1,7 +1,7 @@
 """Whether charts serve their surface: what overlaps, is distorted or has next to no texels, and their scale."""
 
 import numpy as np
-from scipy.sparse import coo_matrix
+from scipy.sparse import coo_matrix, csr_matrix
 from scipy.sparse.csgraph import connected_components
 
 from mua.arrays import Array
@@ -51,25 +51,39 @@ def starved(
     """Say which triangles [F] have far fewer texels for their surface than the rest of their chart, or none.
 
     Areas are smoothed over neighbours, and a patch counts where it is a good part of its chart or of the character, so
-    that a skirt drawn in a narrow band is found and a nostril is not. Many patches count however small they are.
+    that a skirt drawn in a narrow band is found and a nostril is not. Many patches count however small they are. A
+    good part of the character that is drawn too short in one direction alone, as tails of a coat, counts as well:
+    splats as long as its texels would stand out beyond the hem.
     """
-    surface, drawn = areas(positions), areas(isometric(corners, positions, charts))
+    flat = isometric(corners, positions, charts)
+    surface, drawn = areas(positions), areas(flat)
     touches = coo_matrix((np.ones(nodes.size), (np.repeat(np.arange(len(nodes)), 3), nodes.ravel()))).tocsr()
-    there, here = surface, drawn
+    around = np.stack([surface, drawn, surface * (_pulls(flat, positions) > PULLED)], axis=1)
     for _ in range(SMOOTHING):
-        there, here = touches @ (touches.T @ there), touches @ (touches.T @ here)
-    poor = here < STARVED * there
-    patch = np.zeros(len(nodes), np.int64)
-    inside = touches[poor]
-    patch[poor] = 1 + connected_components(inside @ inside.T, directed=False)[1]
-    sizes = np.bincount(patch, surface)
-    large = (sizes[patch] > PATCH * surface.sum()) | (sizes[patch] > np.bincount(charts, surface)[charts] / 2)
-    found = poor & large
+        around = touches @ (touches.T @ around)
+    there, here, pulled = around.T
+    poor, narrow = here < STARVED * there, (pulled > there / 2) & ~distorted(corners, positions, charts)
+    patch, strip = (_patch_areas(some, touches, surface) for some in (poor, narrow))
+    least = PATCH * surface.sum()
+    found = (patch > least) | (strip > least) | (patch > np.bincount(charts, surface)[charts] / 2)
     alone = drawn < STARVED * surface
     if surface[alone & ~found].sum() > SCATTERED * surface.sum():
         return found | alone
     beside = touches @ (touches.T @ found) > 0  # smoothing hid the border of the patch
     return found | (beside & alone)
+
+
+def _patch_areas(
+    some: Array,  # [F] bool
+    touches: csr_matrix,  # [F, nodes]
+    surface: Array,  # [F]
+) -> Array:
+    """The area [F] of the patch of some triangles that each belongs to, 0 for the others."""
+    inside = touches[some]
+    patch = connected_components(inside @ inside.T, directed=False)[1]
+    areas_of = np.zeros(len(some))
+    areas_of[some] = np.bincount(patch, surface[some])[patch]
+    return areas_of
 
 
 def distorted(
@@ -86,10 +100,15 @@ def distorted(
         return np.zeros(0, bool)
     charts = np.unique(charts, return_inverse=True)[1]
     flat = even(corners, positions, charts)
-    scales = np.linalg.svd(np.linalg.pinv(flat[:, 1:] - flat[:, :1]) @ (positions[:, 1:] - positions[:, :1]))[1]
     surface = areas(positions)
-    pulled = np.bincount(charts, surface * (scales[:, 0] > PULLED))
+    pulled = np.bincount(charts, surface * (_pulls(flat, positions) > PULLED))
     return (pulled > DISTORTED * np.bincount(charts, surface))[charts]
+
+
+def _pulls(flat: Array, positions: Array) -> Array:
+    """Surface over drawing [F], in the direction in which each triangle is drawn shortest."""
+    sides = np.linalg.pinv(flat[:, 1:] - flat[:, :1]) @ (positions[:, 1:] - positions[:, :1])
+    return np.linalg.svd(sides, compute_uv=False)[:, 0]
 
 
 def isometric(
