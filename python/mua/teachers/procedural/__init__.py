@@ -33,11 +33,11 @@ def procedural_character(*, seed: int = 0) -> Character:
         build_head(trunk.points),
         build_hair(),
         arm,
-        other_side(arm, cell=(0.86, 0.52, 1.0, 0.88)),
+        other_side(arm, cell=(160, 98, 192, 168)),
         *fingers,
         *(other_side(finger, cell=below(finger.cell)) for finger in fingers),
         leg,
-        other_side(leg, cell=(0.6, 0.52, 0.72, 1.0)),
+        other_side(leg, cell=(108, 98, 128, 192)),
     )
     mesh, weights, looseness = weld(parts)
     indices, weights = strongest(eased(mesh, weights, rounds=16), MAX_INFLUENCES)

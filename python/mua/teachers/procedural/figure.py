@@ -5,7 +5,7 @@ import re
 import numpy as np
 
 from mua.arrays import Array
-from mua.teachers.procedural.grid import Part, angles, close, mirrored, rows_by_length, smoothstep, spline
+from mua.teachers.procedural.grid import Cell, Part, angles, close, mirrored, rows_by_length, smoothstep, spline
 from mua.teachers.procedural.joints import ARM_DIRECTION, FOREARM, INDEX, NAMES, PLACES, UPPER_ARM, chain_weights
 
 COLUMNS = 48  # of trunk and head
@@ -14,7 +14,7 @@ LEG_COLUMNS = 18
 _FINGER_COLUMNS = 6
 SLEEVE_END = 0.365  # metres along the arm
 
-TRIM = 0.45  # ring of the trunk where the neckline's trim ends
+TRIM_EDGE = 0.45  # ring of the trunk where the neckline's trim ends
 _ARMHOLE_ROWS = slice(2, 6)
 _LEFT_ARMHOLE = slice(33, 39)  # columns of quads
 _RIGHT_ARMHOLE = slice(9, 15)
@@ -130,14 +130,14 @@ def _bust(points: Array) -> Array:
 
 def build_trunk() -> Part:
     """From the neckline to the waist, with a rectangular hole for each arm."""
-    keys = spline(_TRUNK, np.r_[0, TRIM, np.arange(1, _TRUNK[-1, 0] + 1)])
+    keys = spline(_TRUNK, np.r_[0, TRIM_EDGE, np.arange(1, _TRUNK[-1, 0] + 1)])
     points = close(_bust(trunk_ring(keys, angles(COLUMNS))))
     hole = np.zeros((len(points) - 1, COLUMNS), dtype=bool)
     hole[_ARMHOLE_ROWS, _LEFT_ARMHOLE] = hole[_ARMHOLE_ROWS, _RIGHT_ARMHOLE] = True
     return Part(
         "trunk",
         points,
-        cell=(0.0, 0.72, 0.48, 1.0),
+        cell=(0, 138, 88, 192),
         rows=rows_by_length(points, np.where(np.arange(len(points) - 1) < 2, 2.0, 1.0)),
         looseness=np.broadcast_to(0.15 * smoothstep(0, 3, np.arange(len(points)))[:, None], points.shape[:2]),
         weights=trunk_weights(points),
@@ -198,7 +198,7 @@ def build_arm(trunk: Array) -> Part:
     along = along_arm(points)
     loose = np.zeros(points.shape[:2])
     loose[: len(_SLEEVE_RINGS) + 1] = (0.15 + 0.3 * smoothstep(0.25, SLEEVE_END, np.r_[0, _SLEEVE_RINGS]))[:, None]
-    return Part("left arm", points, (0.72, 0.52, 0.86, 0.88), rows_by_length(points), loose, arm_weights(along))
+    return Part("left arm", points, (128, 98, 160, 168), rows_by_length(points), loose, arm_weights(along))
 
 
 def build_fingers() -> tuple[Part, ...]:
@@ -210,7 +210,7 @@ def build_fingers() -> tuple[Part, ...]:
         ahead = pointing[0] * ARM_DIRECTION + pointing[1] * palm + np.array([0, 0, pointing[2]])
         points = _finger(root, ahead / np.linalg.norm(ahead), palm, length=length, radius=radius)
         weights = chain_weights(np.zeros(points.shape[:2]), (("LeftHand", 0.0, 0.0),))
-        cell = (0.72 + 0.056 * place, 0.88, 0.776 + 0.056 * place, 0.94)
+        cell = (128 + 12 * place, 168, 140 + 12 * place, 180)
         rows = rows_by_length(points, np.array([0.8, 1, 1.5, 2, 2.5]))  # finest at the tip
         parts.append(Part(f"left {name}", points, cell, rows, np.zeros(points.shape[:2]), weights))
     return tuple(parts)
@@ -244,10 +244,10 @@ def build_leg() -> Part:
     weights = chain_weights(-points[..., 1], links)
     foot = smoothstep(0.085, 0.125, points[..., 2]) * (points[..., 1] < 0.1)
     weights = weights * (1 - foot)[..., None] + chain_weights(foot, (("LeftToeBase", 0.0, 0.0),)) * foot[..., None]
-    return Part("left leg", points, (0.48, 0.52, 0.6, 1.0), rows, np.zeros(points.shape[:2]), weights)
+    return Part("left leg", points, (88, 98, 108, 192), rows, np.zeros(points.shape[:2]), weights)
 
 
-def other_side(part: Part, *, cell: tuple[float, float, float, float]) -> Part:
+def other_side(part: Part, *, cell: Cell) -> Part:
     """The right twin of a left part; its joints are those of the right side."""
     swap = {"Left": "Right", "Right": "Left"}
     partner = [INDEX[re.sub("^(Left|Right)", lambda side: swap[side[0]], name)] for name in NAMES]

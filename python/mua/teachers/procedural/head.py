@@ -36,7 +36,7 @@ _HEAD = np.array(
 )
 _RINGS = np.r_[0, 1.5, 3, 4.5, np.linspace(6, 20, 20), 21, 22, 23, 24.5, 26, 27, 28, 29]  # closest on the face
 # ring, how much finer the texels below it are: eyes, brows and mouth are looked at most
-_FACE_DENSITY = ((3, 0.6), (5, 1.8), (6, 4.5), (10.5, 4.5), (12, 2.8), (15, 3.2), (16, 4.5), (18, 4.0), (20, 1.6), (22, 1.0))
+_FACE_DENSITY = ((3, 0.6), (5, 1.8), (6, 4.5), (10.5, 4.5), (12, 2.8), (15, 3.2), (16, 4.5), (18, 4.0), (20, 1.6), (22, 0.9), (28, 0.9), (29, 1.8))
 _FRONT = np.array([[-np.pi, -np.pi], [-1.9, -0.62], [0, 0], [1.9, 0.62], [np.pi, np.pi]])  # columns gather at the face
 _CROWN, _ENDS = 1.712, 1.485  # y of the hair
 # fraction of the way from crown to ends, half width, front z, back z, y
@@ -85,7 +85,7 @@ def build_head(trunk: Array) -> Part:
     return Part(
         "head",
         points,
-        cell=(0.0, 0.3, 0.48, 0.72),
+        cell=(0, 58, 88, 138),
         rows=rows_by_length(points, density),
         looseness=np.zeros(points.shape[:2]),
         weights=trunk_weights(points),
@@ -110,4 +110,4 @@ def build_hair() -> Part:
     weights = np.zeros((*points.shape[:2], len(NAMES)))
     weights[..., INDEX["Head"]] = 1
     loose = 0.5 * smoothstep(1.6, _ENDS, points[..., 1])
-    return Part("hair", points, (0.48, 0.3, 1.0, 0.52), rows_by_length(points), loose, weights)
+    return Part("hair", points, (88, 58, 192, 98), rows_by_length(points), loose, weights)

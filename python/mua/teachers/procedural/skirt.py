@@ -48,4 +48,4 @@ def build_skirt(trunk: Array, phases: Array) -> Part:
     turned_in = points[-1] * [0.97, 1, 0.97] + [0, 0.015, 0]
     points = close(np.concatenate([points, turned_in[None]]))
     loose = 0.15 + 0.85 * smoothstep(1.03, HEM + 0.1, points[..., 1])
-    return Part("skirt", points, (0.0, 0.0, 1.0, 0.3), rows_by_length(points), loose, _weights(points))
+    return Part("skirt", points, (0, 0, 192, 58), rows_by_length(points), loose, _weights(points))
