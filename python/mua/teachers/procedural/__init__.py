@@ -41,7 +41,7 @@ def procedural_character(*, seed: int = 0) -> Character:
     )
     mesh, weights, looseness = weld(parts)
     indices, weights = strongest(eased(mesh, weights, rounds=16), MAX_INFLUENCES)
-    mesh = replace(mesh, vertices=eased(mesh, mesh.vertices, rounds=4))
+    mesh = replace(mesh, vertices=eased(mesh, mesh.vertices, rounds=6))
     return Character(
         name="procedural",
         skeleton=skeleton,

@@ -4,10 +4,10 @@ import numpy as np
 
 from mua.arrays import Array
 from mua.teachers.procedural.brush import Surface, color, filled, inside, over
-from mua.teachers.procedural.complexion import SKIN, TRIM
+from mua.teachers.procedural.complexion import SKIN
 from mua.teachers.procedural.figure import SLEEVE_EDGE
 
-IVORY, TEAL, CORAL, LEAF = color("f3e6cf"), color("17505e"), color("d9573f"), color("4f8a7b")
+IVORY, TEAL, CORAL, MUSTARD, LEAF = color("f3e6cf"), color("17505e"), color("d9573f"), color("e2a63a"), color("4f8a7b")
 _APEX = 0.197  # metres from the cone's apex to the waist: waist girth / pi, for a half circle of cloth
 _REPEAT = 0.15  # metres from motif to motif
 _TRIM = 0.055  # metres of trim above the hem
@@ -32,14 +32,14 @@ def paint_skirt(surface: Surface) -> Array:
     flower = np.where(even, _flower(x, y, radius=0.06, petals=6), _flower(x, y, radius=0.036, petals=4))
     cloth = over(cloth, np.where(even[..., None], CORAL, TEAL), inside(flower))
     cloth = over(cloth, IVORY, inside(np.abs(np.hypot(x, y) - 0.028) - 0.004) * even)
-    cloth = over(cloth, TRIM, inside(np.hypot(x, y) - np.where(even, 0.019, 0.013)))
+    cloth = over(cloth, MUSTARD, inside(np.hypot(x, y) - np.where(even, 0.019, 0.013)))
     cx, cy = _REPEAT / 2 - np.abs(x), _REPEAT / 2 - np.abs(y)
     cloth = over(cloth, LEAF, inside(np.hypot(cx, cy) - 0.011))
 
     above_hem = surface.along.max() - surface.along - 0.02
     scallop = _TRIM + 0.016 * np.abs(np.sin(surface.around * np.pi * 40))
     cloth = over(cloth, TEAL, inside(above_hem - scallop))
-    return over(cloth, TRIM, inside(np.abs(above_hem - 0.022) - 0.004))
+    return over(cloth, MUSTARD, inside(np.abs(above_hem - 0.022) - 0.004))
 
 
 def paint_bodice(surface: Surface) -> Array:
@@ -47,11 +47,11 @@ def paint_bodice(surface: Surface) -> Array:
     cloth = filled(surface.around, TEAL)
     height = surface.points[..., 1]
     cloth = over(cloth, CORAL, inside(np.abs(height - 1.048) - 0.020))
-    return over(cloth, TRIM, inside(surface.ring - 1, edge=0.05))
+    return over(cloth, MUSTARD, inside(surface.ring - 1, edge=0.05))
 
 
 def paint_sleeve(surface: Surface) -> Array:
     """The top's sleeve with its cuff, then the bare forearm and hand."""
     cloth = filled(surface.around, TEAL)
-    cloth = over(cloth, TRIM, inside(np.abs(surface.ring - SLEEVE_EDGE) - 1, edge=0.05))
+    cloth = over(cloth, MUSTARD, inside(np.abs(surface.ring - SLEEVE_EDGE) - 1, edge=0.05))
     return over(cloth, SKIN, inside(SLEEVE_EDGE + 0.7 - surface.ring, edge=0.05))

@@ -9,9 +9,15 @@ from mua.teachers.procedural.head import EYE, MOUTH, NOSE_TIP
 
 SKIN, BLUSH, SHADE, GLOW = color("e8bb9d"), color("dd8f78"), color("b57f66"), color("f6d6bf")
 LIP, LOWER_LIP, MOUTH_LINE = color("ad4745"), color("c9625c"), color("6e2b2c")
-WHITE, IRIS, IRIS_LIGHT, LASH, BROW = color("f4efe9"), color("36563f"), color("7da06f"), color("241612"), color("4a2c20")
+WHITE, IRIS, IRIS_LIGHT, LASH, BROW = (
+    color("f4efe9"),
+    color("36563f"),
+    color("7da06f"),
+    color("241612"),
+    color("4a2c20"),
+)
 HAIR, HAIR_LIGHT = color("3b2018"), color("6b3d27")
-SHOE, NAIL, TRIM = color("c8452f"), color("f3cfc0"), color("e2a63a")
+SHOE, NAIL = color("c8452f"), color("f3cfc0")
 
 
 def _ellipse(x: Array, y: Array, wide: float, high: float) -> Array:
@@ -41,7 +47,8 @@ def _eye(face: Array, x: Array, y: Array, glint: float) -> Array:
     face = over(face, SHADE, 0.6 * inside(np.abs(lower - 0.0004) - 0.0005) * (np.abs(x) < 0.016))
     lash = np.abs(upper - 0.0006) - 0.0013 - 0.05 * np.maximum(x, 0)
     face = over(face, LASH, inside(np.maximum(lash, np.abs(x - 0.001) - 0.0178)))
-    brow = np.abs(y - 0.022 + 8 * (x - 0.003) ** 2) - 0.0026 + 0.08 * np.maximum(x - 0.002, 0)
+    ends = 0.08 * np.maximum(x - 0.002, 0) + 0.12 * np.maximum(-x - 0.010, 0)
+    brow = np.abs(y - 0.0225 + 9 * (x - 0.004) ** 2) - 0.0026 + ends
     return over(face, BROW, 0.75 * inside(np.maximum(brow, np.abs(x - 0.001) - 0.019), edge=0.002))
 
 
@@ -61,19 +68,29 @@ def paint_head(surface: Surface) -> Array:
     """Scalp, face and skin down to the neckline, the features painted from the front."""
     x, y, z = np.moveaxis(surface.points, -1, 0)
     front, side = z > 0.02, np.abs(x)
-    scalp = smoothstep(0.04, 0.01, z) * smoothstep(1.5, 1.53, y) + smoothstep(1.672, 1.69, y)
-    face = over(filled(x, SKIN), HAIR, np.minimum(scalp, 1))
-    face = over(face, SHADE, 0.5 * np.maximum(smoothstep(1.645, 1.68, y), smoothstep(0.056, 0.07, side) * smoothstep(1.49, 1.52, y) * front))
-    face = over(face, BLUSH, (0.5 * _blot(side - 0.043, y - 1.552, 0.017, 0.013) + 0.15 * _blot(x, y - 1.551, 0.01, 0.008)) * front)
+    under_hair = y - 1.672 + np.where(x > -0.024, 11, 50) * (x + 0.024) ** 2  # metres above the edge over the forehead
+    shadow = np.maximum(smoothstep(-0.02, 0.006, under_hair), smoothstep(0.056, 0.07, side))
+    face = over(filled(x, SKIN), SHADE, 0.5 * shadow * smoothstep(1.49, 1.52, y) * front)
+    face = over(
+        face,
+        HAIR,
+        np.maximum(smoothstep(0.012, 0.022, under_hair), smoothstep(0.04, 0.01, z)) * smoothstep(1.5, 1.53, y),
+    )
+    face = over(
+        face,
+        BLUSH,
+        (0.5 * _blot(side - 0.043, y - 1.552, 0.017, 0.013) + 0.15 * _blot(x, y - 1.551, 0.01, 0.008)) * front,
+    )
     face = over(face, SHADE, 0.35 * _blot(side - EYE[0] + 0.002, y - EYE[1] - 0.011, 0.018, 0.007) * front)  # lids
     face = over(face, SHADE, 0.30 * _blot(side - 0.0125, y - 1.572, 0.004, 0.018) * front)  # beside the nose
-    face = over(face, GLOW, 0.5 * (_blot(x, y - 1.575, 0.004, 0.02) + _blot(x, y - NOSE_TIP - 0.002, 0.004, 0.003)) * front)
+    face = over(
+        face, GLOW, 0.5 * (_blot(x, y - 1.575, 0.004, 0.02) + _blot(x, y - NOSE_TIP - 0.002, 0.004, 0.003)) * front
+    )
     face = over(face, SHADE, 0.6 * inside(_ellipse(side - 0.0065, y - 1.5455, 0.0034, 0.0018)) * front)  # nostrils
     for sign in (-1, 1):
         eye = _eye(face, sign * x - EYE[0], y - EYE[1], -0.0026 * sign)
         face = np.where(front[..., None], eye, face)
-    face = _mouth(face, x, y - MOUTH, front)
-    return over(face, TRIM, inside(surface.ring.max() - 0.25 - surface.ring, edge=0.03))
+    return _mouth(face, x, y - MOUTH, front)
 
 
 def paint_hair(surface: Surface) -> Array:

@@ -9,7 +9,9 @@ from scipy.interpolate import PchipInterpolator
 from mua.arrays import Array
 from mua.rig.character import Mesh
 
-GRID = 192  # texels a side of the smallest texture: charts begin and end with whole texels, so that borders have no gaps
+GRID = (
+    192  # texels a side of the smallest texture: charts begin and end with whole texels, so that borders have no gaps
+)
 GUTTER = 1  # of these texels, half of the empty strip between two charts
 
 

@@ -1,4 +1,4 @@
-"""Head down to the neckline: a tube shaped ring by ring, with features raised on its front; and a parted bob around it."""
+"""Head down to the neckline: a tube shaped ring by ring, features raised on its front, and a parted bob around it."""
 
 import numpy as np
 
@@ -14,8 +14,9 @@ NOSE_TIP, MOUTH = 1.553, 1.526  # y
 # ring, half width, front z, back z, y at the sides, at the front, at the back
 _HEAD = np.array(
     [
-        [0, 0.054, 0.068, -0.080, 1.672, 1.690, 1.640],
-        [1, 0.061, 0.078, -0.090, 1.655, 1.672, 1.625],
+        [-2, 0.0, 0.0, 0.0, 1.692, 1.692, 1.692],
+        [0, 0.050, 0.062, -0.076, 1.664, 1.681, 1.632],
+        [1, 0.060, 0.077, -0.089, 1.651, 1.668, 1.621],
         [3, 0.069, 0.088, -0.094, 1.632, 1.642, 1.605],
         [6, 0.072, 0.091, -0.094, 1.605, 1.610, 1.585],
         [9, 0.071, 0.088, -0.090, 1.582, 1.583, 1.567],
@@ -34,9 +35,23 @@ _HEAD = np.array(
         [29, 0.104, 0.062, -0.087, 1.418, 1.372, 1.424],
     ]
 )
-_RINGS = np.r_[0, 1.5, 3, 4.5, np.linspace(6, 20, 20), 21, 22, 23, 24.5, 26, 27, 28, 29]  # closest on the face
+_RINGS = np.r_[-2, 0, 1.5, 3, 4.5, np.linspace(6, 20, 20), 21, 22, 23, 24.5, 26, 27, 28, 29]  # closest on the face
 # ring, how much finer the texels below it are: eyes, brows and mouth are looked at most
-_FACE_DENSITY = ((3, 0.6), (5, 1.8), (6, 4.5), (10.5, 4.5), (12, 2.8), (15, 3.2), (16, 4.5), (18, 4.0), (20, 1.6), (22, 0.9), (28, 0.9), (29, 1.8))
+_FACE_DENSITY = np.array(
+    [
+        [0, 0.5],
+        [2, 0.8],
+        [5, 2.0],
+        [6, 4.5],
+        [10.5, 4.5],
+        [12, 2.8],
+        [15, 3.2],
+        [16, 4.5],
+        [18, 4.0],
+        [20, 2.2],
+        [22, 0.9],
+    ]
+)
 _FRONT = np.array([[-np.pi, -np.pi], [-1.9, -0.62], [0, 0], [1.9, 0.62], [np.pi, np.pi]])  # columns gather at the face
 _CROWN, _ENDS = 1.712, 1.485  # y of the hair
 # fraction of the way from crown to ends, half width, front z, back z, y
@@ -81,7 +96,7 @@ def build_head(trunk: Array) -> Part:
     theta = below_chin * phi + (1 - below_chin) * spline(_FRONT, phi)[:, 0]
     points = close(_features(trunk_ring(spline(_HEAD, _RINGS), theta)))
     points = np.concatenate([points, trunk[:1]])
-    density = np.interp(_RINGS, *np.transpose(_FACE_DENSITY))
+    density = np.interp(_RINGS, *_FACE_DENSITY.T)
     return Part(
         "head",
         points,
@@ -109,5 +124,6 @@ def build_hair() -> Part:
     points = np.concatenate([tucked[:, :1], points, tucked[:, 1:]], axis=1)
     weights = np.zeros((*points.shape[:2], len(NAMES)))
     weights[..., INDEX["Head"]] = 1
-    loose = 0.5 * smoothstep(1.6, _ENDS, points[..., 1])
-    return Part("hair", points, (88, 58, 192, 98), rows_by_length(points), loose, weights)
+    loose = 0.4 * smoothstep(1.6, _ENDS, points[..., 1])
+    rows = rows_by_length(points, np.where(np.arange(len(points) - 1) == 0, 1.8, 1.0))  # no gap along the parting
+    return Part("hair", points, (88, 58, 192, 98), rows, loose, weights)
