@@ -4,18 +4,13 @@ import numpy as np
 
 from mua.arrays import Array
 from mua.teachers.procedural.brush import Surface, color, filled, inside, over
-from mua.teachers.procedural.grid import smoothstep
+from mua.teachers.procedural.grid import bump, smoothstep
 from mua.teachers.procedural.head import EYE, MOUTH, NOSE_TIP
 
 SKIN, BLUSH, SHADE, GLOW = color("e8bb9d"), color("dd8f78"), color("b57f66"), color("f6d6bf")
 LIP, LOWER_LIP, MOUTH_LINE = color("ad4745"), color("c9625c"), color("6e2b2c")
-WHITE, IRIS, IRIS_LIGHT, LASH, BROW = (
-    color("f4efe9"),
-    color("36563f"),
-    color("7da06f"),
-    color("241612"),
-    color("4a2c20"),
-)
+WHITE, IRIS, IRIS_LIGHT = color("f4efe9"), color("36563f"), color("7da06f")
+LASH, BROW = color("241612"), color("4a2c20")
 HAIR, HAIR_LIGHT = color("3b2018"), color("6b3d27")
 SHOE, NAIL = color("c8452f"), color("f3cfc0")
 
@@ -23,11 +18,6 @@ SHOE, NAIL = color("c8452f"), color("f3cfc0")
 def _ellipse(x: Array, y: Array, wide: float, high: float) -> Array:
     """Signed distance (about) to an ellipse about the origin."""
     return np.asarray((np.hypot(x / wide, y / high) - 1) * min(wide, high))
-
-
-def _blot(x: Array, y: Array, wide: float, high: float) -> Array:
-    """Coverage of a soft spot about the origin."""
-    return np.asarray(np.exp(-((x / wide) ** 2) - (y / high) ** 2))
 
 
 def _eye(face: Array, x: Array, y: Array, glint: float) -> Array:
@@ -52,45 +42,46 @@ def _eye(face: Array, x: Array, y: Array, glint: float) -> Array:
     return over(face, BROW, 0.75 * inside(np.maximum(brow, np.abs(x - 0.001) - 0.019), edge=0.002))
 
 
-def _mouth(face: Array, x: Array, y: Array, front: Array) -> Array:
+def _mouth(face: Array, x: Array, y: Array) -> Array:
     """Closed lips that smile, about the middle of the line between them."""
     away, line = np.clip(1 - np.abs(x) / 0.0225, 0, 1), y - 9 * x**2 + 0.0006 * np.cos(x * 280)
-    upper = line - 0.0068 * away**0.75 + 0.0014 * _blot(x, 0 * y, 0.003, 1)
+    upper = line - 0.0068 * away**0.75 + 0.0014 * bump(x, 0 * y, 0.003, 1)
     lower = -line - 0.0074 * np.sqrt(np.clip(1 - (x / 0.0215) ** 2, 0, 1))
-    shown = inside(np.maximum(np.maximum(upper, lower), np.abs(x) - 0.0225), edge=0.0018) * front
+    shown = inside(np.maximum(np.maximum(upper, lower), np.abs(x) - 0.0225), edge=0.0018)
     face = over(face, np.where(line[..., None] > 0, LIP, LOWER_LIP), shown)
-    face = over(face, GLOW, 0.35 * _blot(x, line + 0.0042, 0.008, 0.0016) * front)
-    face = over(face, MOUTH_LINE, 0.8 * inside(np.maximum(np.abs(line) - 0.0005, np.abs(x) - 0.0225)) * front)
-    return over(face, SHADE, 0.5 * _blot(x, y + 0.0125, 0.010, 0.003) * front)  # below the lower lip
+    face = over(face, GLOW, 0.35 * bump(x, line + 0.0042, 0.008, 0.0016))
+    face = over(face, MOUTH_LINE, 0.8 * inside(np.maximum(np.abs(line) - 0.0005, np.abs(x) - 0.0225)))
+    return over(face, SHADE, 0.5 * bump(x, y + 0.0125, 0.010, 0.003))  # below the lower lip
+
+
+def _scalp(x: Array, y: Array, z: Array) -> Array:
+    """Skin, and in the shadow of the hair above it, as dark as hair below it."""
+    beyond = y - 1.672 + np.where(x > -0.024, 11, 50) * (x + 0.024) ** 2  # metres above the edge over the forehead
+    shadow = np.maximum(smoothstep(-0.02, 0.006, beyond), smoothstep(0.056, 0.07, np.abs(x)))
+    skin = over(filled(x, SKIN), SHADE, 0.5 * shadow * smoothstep(1.49, 1.52, y) * (z > 0.02))
+    hidden = np.maximum(smoothstep(0.012, 0.022, beyond), smoothstep(0.04, 0.01, z))
+    return over(skin, HAIR, hidden * smoothstep(1.5, 1.53, y))
+
+
+def _modelled(face: Array, x: Array, y: Array) -> Array:
+    """Soft colours of cheeks and lids, and the light on the nose."""
+    side, below_tip = np.abs(x), y - NOSE_TIP
+    cheeks = 0.5 * bump(side - 0.043, y - 1.552, 0.017, 0.013) + 0.15 * bump(x, below_tip + 0.002, 0.01, 0.008)
+    face = over(face, BLUSH, cheeks)
+    face = over(face, SHADE, 0.35 * bump(side - EYE[0] + 0.002, y - EYE[1] - 0.011, 0.018, 0.007))  # lids
+    face = over(face, SHADE, 0.30 * bump(side - 0.0125, y - 1.572, 0.004, 0.018))  # beside the nose
+    face = over(face, GLOW, 0.5 * (bump(x, y - 1.575, 0.004, 0.02) + bump(x, below_tip - 0.002, 0.004, 0.003)))
+    return over(face, SHADE, 0.6 * inside(_ellipse(side - 0.0065, below_tip + 0.0075, 0.0034, 0.0018)))  # nostrils
 
 
 def paint_head(surface: Surface) -> Array:
     """Scalp, face and skin down to the neckline, the features painted from the front."""
     x, y, z = np.moveaxis(surface.points, -1, 0)
-    front, side = z > 0.02, np.abs(x)
-    under_hair = y - 1.672 + np.where(x > -0.024, 11, 50) * (x + 0.024) ** 2  # metres above the edge over the forehead
-    shadow = np.maximum(smoothstep(-0.02, 0.006, under_hair), smoothstep(0.056, 0.07, side))
-    face = over(filled(x, SKIN), SHADE, 0.5 * shadow * smoothstep(1.49, 1.52, y) * front)
-    face = over(
-        face,
-        HAIR,
-        np.maximum(smoothstep(0.012, 0.022, under_hair), smoothstep(0.04, 0.01, z)) * smoothstep(1.5, 1.53, y),
-    )
-    face = over(
-        face,
-        BLUSH,
-        (0.5 * _blot(side - 0.043, y - 1.552, 0.017, 0.013) + 0.15 * _blot(x, y - 1.551, 0.01, 0.008)) * front,
-    )
-    face = over(face, SHADE, 0.35 * _blot(side - EYE[0] + 0.002, y - EYE[1] - 0.011, 0.018, 0.007) * front)  # lids
-    face = over(face, SHADE, 0.30 * _blot(side - 0.0125, y - 1.572, 0.004, 0.018) * front)  # beside the nose
-    face = over(
-        face, GLOW, 0.5 * (_blot(x, y - 1.575, 0.004, 0.02) + _blot(x, y - NOSE_TIP - 0.002, 0.004, 0.003)) * front
-    )
-    face = over(face, SHADE, 0.6 * inside(_ellipse(side - 0.0065, y - 1.5455, 0.0034, 0.0018)) * front)  # nostrils
+    bare = _scalp(x, y, z)
+    face = _modelled(bare, x, y)
     for sign in (-1, 1):
-        eye = _eye(face, sign * x - EYE[0], y - EYE[1], -0.0026 * sign)
-        face = np.where(front[..., None], eye, face)
-    return _mouth(face, x, y - MOUTH, front)
+        face = _eye(face, sign * x - EYE[0], y - EYE[1], -0.0026 * sign)
+    return np.where((z > 0.02)[..., None], _mouth(face, x, y - MOUTH), bare)
 
 
 def paint_hair(surface: Surface) -> Array:

@@ -5,7 +5,7 @@ import re
 import numpy as np
 
 from mua.arrays import Array
-from mua.teachers.procedural.grid import Cell, Part, angles, close, mirrored, rows_by_length, smoothstep, spline
+from mua.teachers.procedural.grid import Cell, Part, angles, bump, close, mirrored, rows_by_length, smoothstep, spline
 from mua.teachers.procedural.joints import ARM_DIRECTION, FOREARM, INDEX, NAMES, PLACES, UPPER_ARM, chain_weights
 
 COLUMNS = 48  # of trunk and head
@@ -14,7 +14,7 @@ LEG_COLUMNS = 18
 _FINGER_COLUMNS = 6
 SLEEVE_END = 0.365  # metres along the arm
 
-TRIM_EDGE = 0.45  # ring of the trunk where the neckline's trim ends
+_TRIM_EDGE = 0.45  # ring of the trunk where the neckline's trim ends
 _ARMHOLE_ROWS = slice(2, 6)
 _LEFT_ARMHOLE = slice(33, 39)  # columns of quads
 _RIGHT_ARMHOLE = slice(9, 15)
@@ -124,13 +124,13 @@ def trunk_ring(keys: Array, theta: Array) -> Array:
 
 def _bust(points: Array) -> Array:
     x, y, z = np.moveaxis(points, -1, 0)
-    bump = sum(np.exp(-(((x - side) / 0.042) ** 2) - ((y - 1.243) / 0.042) ** 2) for side in (-0.066, 0.066))
-    return np.stack([x, y, z + 0.020 * bump * (z > 0)], axis=-1)
+    depth = 0.020 * sum(bump(x - side, y - 1.243, 0.042, 0.042) for side in (-0.066, 0.066))
+    return np.stack([x, y, z + depth * (z > 0)], axis=-1)
 
 
 def build_trunk() -> Part:
     """From the neckline to the waist, with a rectangular hole for each arm."""
-    keys = spline(_TRUNK, np.r_[0, TRIM_EDGE, np.arange(1, _TRUNK[-1, 0] + 1)])
+    keys = spline(_TRUNK, np.r_[0, _TRIM_EDGE, np.arange(1, _TRUNK[-1, 0] + 1)])
     points = close(_bust(trunk_ring(keys, angles(COLUMNS))))
     hole = np.zeros((len(points) - 1, COLUMNS), dtype=bool)
     hole[_ARMHOLE_ROWS, _LEFT_ARMHOLE] = hole[_ARMHOLE_ROWS, _RIGHT_ARMHOLE] = True

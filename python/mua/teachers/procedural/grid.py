@@ -57,6 +57,11 @@ def smoothstep(low: float, high: float, x: Array) -> Array:
     return np.asarray(t * t * (3 - 2 * t))
 
 
+def bump(x: Array, y: Array, wide: float, high: float) -> Array:
+    """1 at the origin, falling softly to 0 over `wide` and `high`."""
+    return np.asarray(np.exp(-((x / wide) ** 2) - (y / high) ** 2))
+
+
 def angles(columns: int) -> Array:
     """[C + 1] angles from the back (-pi) over the right side, front (0) and left side to the back again."""
     return np.linspace(-np.pi, np.pi, columns + 1)

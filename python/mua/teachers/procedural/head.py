@@ -4,7 +4,7 @@ import numpy as np
 
 from mua.arrays import Array
 from mua.teachers.procedural.figure import COLUMNS, trunk_ring, trunk_weights
-from mua.teachers.procedural.grid import Part, angles, close, rows_by_length, smoothstep, spline
+from mua.teachers.procedural.grid import Part, angles, bump, close, rows_by_length, smoothstep, spline
 from mua.teachers.procedural.joints import INDEX, NAMES
 
 HAIR_COLUMNS = 40
@@ -73,20 +73,16 @@ _PARTING = -0.3  # its angle
 _FACE_EDGES = 0.95, 2 * np.pi - 1.0  # angles to which the hair falls beside the face: left, and round to the right
 
 
-def _bump(x: Array, y: Array, wide: float, high: float) -> Array:
-    return np.asarray(np.exp(-((x / wide) ** 2) - (y / high) ** 2))
-
-
 def _features(points: Array) -> Array:
     """Raise nose, lips, chin and cheeks and hollow the eyes on the front of the head."""
     x, y, z = np.moveaxis(points, -1, 0)
     side = np.abs(x)
     bridge = np.clip((1.604 - y) / (1.604 - NOSE_TIP), 0, 1) * smoothstep(1.538, 1.551, y)
     depth = 0.014 * bridge * np.exp(-((x / 0.009) ** 2))
-    depth += 0.006 * _bump(x, y - NOSE_TIP, 0.009, 0.008) + 0.005 * _bump(side - 0.011, y - 1.549, 0.006, 0.007)
-    depth += 0.004 * _bump(x, y - MOUTH - 0.003, 0.016, 0.004) + 0.005 * _bump(x, y - MOUTH + 0.005, 0.014, 0.005)
-    depth += 0.004 * _bump(x, y - 1.497, 0.014, 0.009) + 0.003 * _bump(side - 0.042, y - 1.556, 0.014, 0.014)
-    depth -= 0.006 * _bump(side - EYE[0] + 0.004, y - EYE[1] - 0.001, 0.016, 0.010)
+    depth += 0.006 * bump(x, y - NOSE_TIP, 0.009, 0.008) + 0.005 * bump(side - 0.011, y - 1.549, 0.006, 0.007)
+    depth += 0.004 * bump(x, y - MOUTH - 0.003, 0.016, 0.004) + 0.005 * bump(x, y - MOUTH + 0.005, 0.014, 0.005)
+    depth += 0.004 * bump(x, y - 1.497, 0.014, 0.009) + 0.003 * bump(side - 0.042, y - 1.556, 0.014, 0.014)
+    depth -= 0.006 * bump(side - EYE[0] + 0.004, y - EYE[1] - 0.001, 0.016, 0.010)
     return np.stack([x, y, z + depth * (z > 0.03)], axis=-1)
 
 
@@ -107,8 +103,8 @@ def build_head(trunk: Array) -> Part:
     )
 
 
-def build_hair() -> Part:
-    """A chin-length bob: strands fall from a parting on the right, straight as seen on the crown; its rim turns in."""
+def _strands() -> Array:
+    """Points [R, C + 1, 3] from a parting on the right to the ends; from above, strands are straight."""
     around = np.linspace(0, 1, HAIR_COLUMNS + 1)
     forward = _HAIRLINE * np.clip(np.abs(2 * around - 1) / 0.6 - 2 / 3, 0, 1)  # at the back all fall from the crown
     root = forward * np.array([[np.sin(_PARTING)], [np.cos(_PARTING)]])
@@ -119,7 +115,12 @@ def build_hair() -> Part:
     width, front, back, height = np.moveaxis(spline(_HAIR, np.minimum(fraction, 1)), -1, 0)
     sine, cosine = across / np.maximum(fraction, 1e-9), ahead / np.maximum(fraction, 1e-9)
     height = height - 0.01 * cosine * fraction**2  # longer toward the chin
-    points = np.stack([width * sine, height, np.where(cosine > 0, front, -back) * cosine], axis=-1)
+    return np.stack([width * sine, height, np.where(cosine > 0, front, -back) * cosine], axis=-1)
+
+
+def build_hair() -> Part:
+    """A chin-length bob; a column more on either side of the face turns in toward the head."""
+    points = _strands()
     tucked = points[:, [0, -1]] * [0.9, 1, 0.9]
     points = np.concatenate([tucked[:, :1], points, tucked[:, 1:]], axis=1)
     weights = np.zeros((*points.shape[:2], len(NAMES)))
