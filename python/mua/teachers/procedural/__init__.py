@@ -1,5 +1,7 @@
 """The procedural character: a dressed figure with its own clips, made from nothing but a seed."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from mua.limits import MAX_INFLUENCES
@@ -31,14 +33,15 @@ def procedural_character(*, seed: int = 0) -> Character:
         build_head(trunk.points),
         build_hair(),
         arm,
-        other_side(arm, cell=(0.52, 0.64, 0.68, 1.0)),
+        other_side(arm, cell=(160, 98, 192, 168)),
         *fingers,
         *(other_side(finger, cell=below(finger.cell)) for finger in fingers),
         leg,
-        other_side(leg, cell=(0.18, 0.64, 0.36, 1.0)),
+        other_side(leg, cell=(108, 98, 128, 192)),
     )
     mesh, weights, looseness = weld(parts)
-    indices, weights = strongest(eased(mesh, weights), MAX_INFLUENCES)
+    indices, weights = strongest(eased(mesh, weights, rounds=16), MAX_INFLUENCES)
+    mesh = replace(mesh, vertices=eased(mesh, mesh.vertices, rounds=6))
     return Character(
         name="procedural",
         skeleton=skeleton,

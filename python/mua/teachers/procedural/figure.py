@@ -5,7 +5,7 @@ import re
 import numpy as np
 
 from mua.arrays import Array
-from mua.teachers.procedural.grid import Part, angles, close, mirrored, rows_by_length, smoothstep, spline
+from mua.teachers.procedural.grid import Cell, Part, angles, bump, close, mirrored, rows_by_length, smoothstep, spline
 from mua.teachers.procedural.joints import ARM_DIRECTION, FOREARM, INDEX, NAMES, PLACES, UPPER_ARM, chain_weights
 
 COLUMNS = 48  # of trunk and head
@@ -14,26 +14,24 @@ LEG_COLUMNS = 18
 _FINGER_COLUMNS = 6
 SLEEVE_END = 0.365  # metres along the arm
 
-_ARMHOLE_ROWS = slice(4, 8)
+_TRIM_EDGE = 0.45  # ring of the trunk where the neckline's trim ends
+_ARMHOLE_ROWS = slice(2, 6)
 _LEFT_ARMHOLE = slice(33, 39)  # columns of quads
 _RIGHT_ARMHOLE = slice(9, 15)
 
 # ring, half width, front z, back z, y at the sides, at the front, at the back
 _TRUNK = np.array(
     [
-        [0, 0.054, 0.036, -0.064, 1.430, 1.405, 1.445],
-        [1, 0.080, 0.050, -0.076, 1.423, 1.390, 1.436],
-        [2, 0.104, 0.062, -0.087, 1.418, 1.372, 1.424],
-        [3, 0.130, 0.071, -0.095, 1.413, 1.354, 1.412],
-        [4, 0.153, 0.078, -0.101, 1.405, 1.337, 1.397],
-        [6, 0.150, 0.091, -0.107, 1.345, 1.303, 1.348],
-        [8, 0.147, 0.103, -0.107, 1.290, 1.268, 1.297],
-        [10, 0.140, 0.110, -0.100, 1.240, 1.232, 1.245],
-        [12, 0.128, 0.097, -0.091, 1.190, 1.186, 1.192],
-        [14, 0.117, 0.087, -0.084, 1.142, 1.140, 1.143],
-        [16, 0.109, 0.081, -0.079, 1.098, 1.098, 1.098],
-        [18, 0.107, 0.079, -0.078, 1.062, 1.062, 1.062],
-        [20, 0.112, 0.083, -0.081, 1.030, 1.030, 1.030],
+        [0, 0.130, 0.071, -0.095, 1.413, 1.354, 1.412],
+        [1, 0.153, 0.078, -0.101, 1.405, 1.337, 1.397],
+        [3, 0.150, 0.091, -0.107, 1.345, 1.303, 1.348],
+        [5, 0.147, 0.103, -0.107, 1.290, 1.268, 1.297],
+        [7, 0.140, 0.110, -0.100, 1.240, 1.232, 1.245],
+        [9, 0.128, 0.097, -0.091, 1.190, 1.186, 1.192],
+        [11, 0.117, 0.087, -0.084, 1.142, 1.140, 1.143],
+        [13, 0.109, 0.081, -0.079, 1.098, 1.098, 1.098],
+        [15, 0.107, 0.079, -0.078, 1.062, 1.062, 1.062],
+        [17, 0.112, 0.083, -0.081, 1.030, 1.030, 1.030],
     ]
 )
 
@@ -72,7 +70,7 @@ _FINGERS = (
     ("little finger", 0.586, -0.0265, 0.062, 0.0082, (1.0, 0.05, -0.12)),
 )
 # share of a finger's length, and of its radius
-_FINGER_RINGS = np.array([[0, 1.05], [0.4, 1.0], [0.75, 0.84], [0.93, 0.6], [1, 0]])
+_FINGER_RINGS = np.array([[0, 1.05], [0.45, 1.0], [0.75, 0.9], [0.9, 0.74], [0.97, 0.45], [1, 0]])
 _CURL = 2.2  # per metre: how the fingers bend toward the palm
 _SLEEVE_RINGS = np.array([0.045, 0.07, 0.1, 0.135, 0.17, 0.205, 0.24, 0.265, 0.29, 0.325, 0.36, 0.365])
 SLEEVE_EDGE = len(_SLEEVE_RINGS)  # the ring of the arm where cloth ends
@@ -112,14 +110,6 @@ def trunk_weights(points: Array) -> Array:
     return chain_weights(points[..., 1] + 0.3 * np.minimum(points[..., 2], 0.05) * (points[..., 1] > 1.4), _NECK_LINKS)
 
 
-def neckline(points: Array) -> Array:
-    """Signed metres [...] above the edge of the bodice's wide neckline: positive on skin."""
-    x, y, z = np.moveaxis(points, -1, 0)
-    scoop = np.clip(1 - (x / 0.112) ** 2, 0, 1)
-    depth = np.where(z > -0.01, 0.075, 0.012)
-    return np.asarray(y - 1.418 + depth * scoop)
-
-
 def trunk_ring(keys: Array, theta: Array) -> Array:
     """Points [R, C + 1, 3] of rings given as (half width, front z, back z, y at sides, front, back)."""
     width, front, back, side, ahead, behind = (keys[:, i, None] for i in range(6))
@@ -134,22 +124,22 @@ def trunk_ring(keys: Array, theta: Array) -> Array:
 
 def _bust(points: Array) -> Array:
     x, y, z = np.moveaxis(points, -1, 0)
-    bump = sum(np.exp(-(((x - side) / 0.042) ** 2) - ((y - 1.243) / 0.042) ** 2) for side in (-0.066, 0.066))
-    return np.stack([x, y, z + 0.020 * bump * (z > 0)], axis=-1)
+    depth = 0.020 * sum(bump(x - side, y - 1.243, 0.042, 0.042) for side in (-0.066, 0.066))
+    return np.stack([x, y, z + depth * (z > 0)], axis=-1)
 
 
 def build_trunk() -> Part:
-    """From the base of the neck to the waist, with a rectangular hole for each arm."""
-    keys = spline(_TRUNK, np.arange(_TRUNK[-1, 0] + 1))
+    """From the neckline to the waist, with a rectangular hole for each arm."""
+    keys = spline(_TRUNK, np.r_[0, _TRIM_EDGE, np.arange(1, _TRUNK[-1, 0] + 1)])
     points = close(_bust(trunk_ring(keys, angles(COLUMNS))))
     hole = np.zeros((len(points) - 1, COLUMNS), dtype=bool)
     hole[_ARMHOLE_ROWS, _LEFT_ARMHOLE] = hole[_ARMHOLE_ROWS, _RIGHT_ARMHOLE] = True
     return Part(
         "trunk",
         points,
-        cell=(0.0, 0.34, 0.5, 0.64),
-        rows=rows_by_length(points),
-        looseness=0.15 * smoothstep(0.01, -0.02, neckline(points)),
+        cell=(0, 138, 88, 192),
+        rows=rows_by_length(points, np.where(np.arange(len(points) - 1) < 2, 2.0, 1.0)),
+        looseness=np.broadcast_to(0.15 * smoothstep(0, 3, np.arange(len(points)))[:, None], points.shape[:2]),
         weights=trunk_weights(points),
         hole=hole,
     )
@@ -187,9 +177,6 @@ def _arm_points(trunk: Array) -> Array:
     sleeve += rounded[..., None] * np.abs([ARM_DIRECTION[1], ARM_DIRECTION[0], 0.0])
     hand = _arm_ring(_HAND_RINGS[:, None], spline(_HAND, _HAND_RINGS))
     points = np.concatenate([_armhole(trunk)[None], sleeve, hand])
-    for _ in range(3):  # ease the first rings into the shoulder
-        inner = slice(1, 5)
-        points[inner] = 0.5 * points[inner] + 0.25 * (points[0:4] + points[2:6])
     return close(points)
 
 
@@ -211,7 +198,7 @@ def build_arm(trunk: Array) -> Part:
     along = along_arm(points)
     loose = np.zeros(points.shape[:2])
     loose[: len(_SLEEVE_RINGS) + 1] = (0.15 + 0.3 * smoothstep(0.25, SLEEVE_END, np.r_[0, _SLEEVE_RINGS]))[:, None]
-    return Part("left arm", points, (0.36, 0.64, 0.52, 1.0), rows_by_length(points), loose, arm_weights(along))
+    return Part("left arm", points, (128, 98, 160, 168), rows_by_length(points), loose, arm_weights(along))
 
 
 def build_fingers() -> tuple[Part, ...]:
@@ -223,8 +210,9 @@ def build_fingers() -> tuple[Part, ...]:
         ahead = pointing[0] * ARM_DIRECTION + pointing[1] * palm + np.array([0, 0, pointing[2]])
         points = _finger(root, ahead / np.linalg.norm(ahead), palm, length=length, radius=radius)
         weights = chain_weights(np.zeros(points.shape[:2]), (("LeftHand", 0.0, 0.0),))
-        cell = (0.68 + 0.064 * place, 0.88, 0.744 + 0.064 * place, 0.94)
-        parts.append(Part(f"left {name}", points, cell, rows_by_length(points), np.zeros(points.shape[:2]), weights))
+        cell = (128 + 12 * place, 168, 140 + 12 * place, 180)
+        rows = rows_by_length(points, np.array([0.8, 1, 1.5, 2, 2.5]))  # finest at the tip
+        parts.append(Part(f"left {name}", points, cell, rows, np.zeros(points.shape[:2]), weights))
     return tuple(parts)
 
 
@@ -241,7 +229,7 @@ def _finger(root: Array, ahead: Array, palm: Array, *, length: float, radius: fl
 
 def build_leg() -> Part:
     """The left leg and its shoe, open at the top under the skirt."""
-    keys = spline(_LEG, np.arange(_LEG[-1, 0] + 1))
+    keys = spline(_LEG, np.r_[0, 2.5, np.arange(5, _LEG[-1, 0] + 1)])
     x, y, z, tilt, width, front, back = (keys[:, i, None] for i in range(7))
     theta, tilt = angles(LEG_COLUMNS), np.radians(tilt)
     reach = np.where(np.cos(theta) > 0, front, back) * np.cos(theta)
@@ -250,16 +238,16 @@ def build_leg() -> Part:
     )
     points = close(points.copy())
     points[..., 1] = np.maximum(points[..., 1], 0)
-    hidden = np.where(np.arange(len(points) - 1) < 5, 0.4, 1.0)
+    hidden = np.where(np.arange(len(points) - 1) < 2, 0.4, 1.0)
     rows = rows_by_length(points, hidden)
     links = (("LeftUpLeg", 0.0, 0.0), ("LeftLeg", -0.485, 0.05), ("LeftFoot", -0.09, 0.03))
     weights = chain_weights(-points[..., 1], links)
     foot = smoothstep(0.085, 0.125, points[..., 2]) * (points[..., 1] < 0.1)
     weights = weights * (1 - foot)[..., None] + chain_weights(foot, (("LeftToeBase", 0.0, 0.0),)) * foot[..., None]
-    return Part("left leg", points, (0.0, 0.64, 0.18, 1.0), rows, np.zeros(points.shape[:2]), weights)
+    return Part("left leg", points, (88, 98, 108, 192), rows, np.zeros(points.shape[:2]), weights)
 
 
-def other_side(part: Part, *, cell: tuple[float, float, float, float]) -> Part:
+def other_side(part: Part, *, cell: Cell) -> Part:
     """The right twin of a left part; its joints are those of the right side."""
     swap = {"Left": "Right", "Right": "Left"}
     partner = [INDEX[re.sub("^(Left|Right)", lambda side: swap[side[0]], name)] for name in NAMES]

@@ -1,6 +1,7 @@
 """Parts of a figure as grids of points, each with its own rectangle of the atlas, and their welding into one mesh."""
 
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
@@ -8,7 +9,13 @@ from scipy.interpolate import PchipInterpolator
 from mua.arrays import Array
 from mua.rig.character import Mesh
 
-GUTTER = 1.5 / 256  # half of the empty strip between two charts, in UV
+GRID = (
+    192  # texels a side of the smallest texture: charts begin and end with whole texels, so that borders have no gaps
+)
+GUTTER = 1  # of these texels, half of the empty strip between two charts
+
+
+Cell: TypeAlias = tuple[int, int, int, int]  # a rectangle of the atlas in texels of GRID
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,7 +27,7 @@ class Part:
 
     name: str
     points: Array  # [R, C + 1, 3] metres, rings by columns, seen from outside as an image is read
-    cell: tuple[float, float, float, float]  # u0, v0, u1, v1 of the atlas, gutter included
+    cell: Cell  # left, top, right, bottom in the atlas, gutter included
     rows: Array  # [R] 0..1 where the rings lie along the chart
     looseness: Array  # [R, C + 1]
     weights: Array  # [R, C + 1, J]
@@ -28,15 +35,15 @@ class Part:
 
     @property
     def chart(self) -> tuple[float, float, float, float]:
-        """The cell without its gutter."""
-        u0, v0, u1, v1 = self.cell
-        return u0 + GUTTER, v0 + GUTTER, u1 - GUTTER, v1 - GUTTER
+        """The cell without its gutter, in UV."""
+        left, top, right, bottom = self.cell
+        return (left + GUTTER) / GRID, (top + GUTTER) / GRID, (right - GUTTER) / GRID, (bottom - GUTTER) / GRID
 
 
-def below(cell: tuple[float, float, float, float]) -> tuple[float, float, float, float]:
+def below(cell: Cell) -> Cell:
     """The cell of equal size under another one in the atlas."""
-    u0, v0, u1, v1 = cell
-    return u0, v1, u1, 2 * v1 - v0
+    left, top, right, bottom = cell
+    return left, bottom, right, 2 * bottom - top
 
 
 def spline(keys: Array, at: Array) -> Array:
@@ -48,6 +55,11 @@ def smoothstep(low: float, high: float, x: Array) -> Array:
     """0 below `low`, 1 above `high`, smooth between; reversed where low > high."""
     t = np.clip((x - low) / (high - low), 0, 1)
     return np.asarray(t * t * (3 - 2 * t))
+
+
+def bump(x: Array, y: Array, wide: float, high: float) -> Array:
+    """1 at the origin, falling softly to 0 over `wide` and `high`."""
+    return np.asarray(np.exp(-((x / wide) ** 2) - (y / high) ** 2))
 
 
 def angles(columns: int) -> Array:

@@ -8,7 +8,7 @@ from mua.arrays import Array
 from mua.teachers.procedural.brush import Surface
 from mua.teachers.procedural.cloth import paint_bodice, paint_skirt, paint_sleeve
 from mua.teachers.procedural.complexion import paint_finger, paint_hair, paint_head, paint_leg
-from mua.teachers.procedural.grid import Part
+from mua.teachers.procedural.grid import GRID, Part
 
 ATLAS = 1024  # texels a side
 _BACKGROUND = (0.5, 0.5, 0.5)
@@ -49,9 +49,9 @@ def paint(parts: tuple[Part, ...]) -> Array:
     atlas[..., :3] = _BACKGROUND
     centers = (np.arange(ATLAS) + 0.5) / ATLAS
     for part in parts:
-        u0, v0, u1, v1 = part.cell
-        rows = np.flatnonzero((centers >= v0) & (centers < v1))
-        columns = np.flatnonzero((centers >= u0) & (centers < u1))
+        left, top, right, bottom = part.cell
+        rows = np.flatnonzero((centers * GRID >= top) & (centers * GRID < bottom))
+        columns = np.flatnonzero((centers * GRID >= left) & (centers * GRID < right))
         brush = _BRUSHES.get(part.name, paint_finger)
         atlas[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1, :3] = brush(
             _surface(part, centers[rows], centers[columns])

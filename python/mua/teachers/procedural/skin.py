@@ -1,4 +1,4 @@
-"""Skin weights of the welded mesh: eased where arms meet the trunk, then cut to the strongest few."""
+"""The welded mesh and its skin weights, eased where arms meet the trunk; weights are cut to the strongest few."""
 
 import numpy as np
 from scipy.sparse import coo_matrix, csr_matrix
@@ -7,8 +7,6 @@ from mua.arrays import Array
 from mua.rig.character import Mesh
 from mua.teachers.procedural.grid import smoothstep
 from mua.teachers.procedural.joints import PLACES
-
-_ROUNDS = 16  # of averaging over neighbours: blends over some three rings
 
 
 def _neighbours(mesh: Mesh) -> csr_matrix:
@@ -20,14 +18,14 @@ def _neighbours(mesh: Mesh) -> csr_matrix:
     return csr_matrix(edges.multiply(1 / edges.sum(axis=1)))
 
 
-def eased(mesh: Mesh, weights: Array) -> Array:
-    """Blend weights [V, J] across the shoulders, where chains of the arms end at those of the trunk."""
+def eased(mesh: Mesh, values: Array, *, rounds: int) -> Array:
+    """Values [V, c] averaged over neighbours across the shoulders, where the arms' rings meet those of the trunk."""
     average = _neighbours(mesh)
     away = np.min([np.linalg.norm(mesh.vertices - PLACES[f"{side}Arm"], axis=1) for side in ("Left", "Right")], axis=0)
     share = 0.5 * smoothstep(0.15, 0.10, away)[:, None]
-    for _ in range(_ROUNDS):
-        weights = (1 - share) * weights + share * (average @ weights)
-    return weights
+    for _ in range(rounds):
+        values = (1 - share) * values + share * (average @ values)
+    return values
 
 
 def strongest(weights: Array, count: int) -> tuple[Array, Array]:

@@ -8,7 +8,7 @@ from mua.teachers.procedural.grid import Part, angles, close, rows_by_length, sm
 from mua.teachers.procedural.joints import INDEX, NAMES
 
 SKIRT_COLUMNS = 72
-RINGS = 17
+RINGS = 16
 FOLDS = 9
 HEM = 0.39  # y, metres
 _HEM_RADIUS = np.array([0.40, 0.38])  # x, z
@@ -48,4 +48,4 @@ def build_skirt(trunk: Array, phases: Array) -> Part:
     turned_in = points[-1] * [0.97, 1, 0.97] + [0, 0.015, 0]
     points = close(np.concatenate([points, turned_in[None]]))
     loose = 0.15 + 0.85 * smoothstep(1.03, HEM + 0.1, points[..., 1])
-    return Part("skirt", points, (0.0, 0.0, 1.0, 0.34), rows_by_length(points), loose, _weights(points))
+    return Part("skirt", points, (0, 0, 192, 58), rows_by_length(points), loose, _weights(points))
