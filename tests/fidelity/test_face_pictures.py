@@ -1,6 +1,5 @@
 """The close look at a face: each expression of the file beside the splats' own, drawn only where it moves them."""
 
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -126,11 +125,10 @@ def test_what_a_process_leaves_is_drawn_here(tmp_path: Path) -> None:
     teacher = StillTeacher(character, texels=TEXELS)
     whole = drawn_here(character, teacher)
 
-    class Stopping(SourceProcess):
-        def splat_faces(self) -> Iterator[Patch]:
-            return iter([Patch(whole_screen(), whole.rest.splats), Patch(Area(0, 0, 0, 0), np.empty((0, 0, 4)))])
-
-    parts = drawn_here(character, teacher, Stopping())
+    stopping = SourceProcess()
+    for patch in Patch(whole_screen(), whole.rest.splats), Patch(Area(0, 0, 0, 0), np.empty((0, 0, 4))), None:
+        stopping._splat_faces.put(patch)
+    parts = drawn_here(character, teacher, stopping)
     np.testing.assert_array_equal(parts.expressions[0].splats, whole.rest.splats)
     np.testing.assert_array_equal(parts.expressions[1].splats, whole.expressions[1].splats)
 

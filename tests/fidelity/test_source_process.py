@@ -20,7 +20,7 @@ from mua.fidelity.compare import face_of, sittings_of
 from mua.fidelity.source_faces import source_faces
 from mua.fidelity.source_poses import source_poses
 from mua.fidelity.source_process import SourceProcess
-from mua.fidelity.splat_faces import splat_faces
+from mua.fidelity.splat_faces import SplatFaces
 from mua.teachers.simulated.still import StillTeacher
 
 
@@ -44,11 +44,13 @@ def test_the_process_draws_what_this_one_would(surfaces: Surfaces) -> None:
         face = face_of(StillTeacher(character, texels=96), source.scene, rest)
         assert face is not None
         process.draw_faces_of(face)
-        answers, poses = (list(process.faces()), list(process.splat_faces())), list(process.poses())
+        answers, poses = list(process.faces()), list(process.poses())
+        drawn = [process._splat_faces.get() for _ in range(3)]
     with opened() as context:
         np.testing.assert_array_equal(poses, list(source_poses(context, source.scene, sittings)))
-        here = list(source_faces(context, source.scene, rest, expressions.names)), list(splat_faces(context, face))
-    for drawn, expected in zip(answers, here, strict=True):
+        splats = SplatFaces(context, face)
+        here = list(source_faces(context, source.scene, rest, expressions.names)), [*map(splats.patch, range(3))]
+    for drawn, expected in zip((answers, drawn), here, strict=True):
         assert [patch.area for patch in drawn] == [patch.area for patch in expected]
         for patch, other in zip(drawn, expected, strict=True):
             np.testing.assert_array_equal(patch.image, other.image)
@@ -60,7 +62,7 @@ def test_nothing_that_the_process_draws_is_drawn_here(surfaces: Surfaces, monkey
         raise AssertionError
         yield
 
-    for module, name in ((compare, "source_poses"), (faces, "source_faces"), (faces, "splat_faces")):
+    for module, name in ((compare, "source_poses"), (faces, "source_faces")):
         monkeypatch.setattr(module, name, nothing)
     with SourceProcess() as process:
         process.begin(surfaces)

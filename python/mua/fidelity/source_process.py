@@ -1,4 +1,5 @@
-"""Draws a character's file in a process beside this one, while its splats are made, and then the faces of the splats.
+"""Draws a character's file in a process beside this one, while its splats are made, and then the faces of the splats
+together with this one.
 
 The process is this module as a program: it reads a source, a skeleton and the names of expressions from standard input
 and writes images to standard output, then poses and writes theirs, then a still face. It is a process because OpenGL
@@ -23,7 +24,7 @@ from mua.fidelity.canvas import opened
 from mua.fidelity.posed_source import Poser
 from mua.fidelity.source_faces import Patch, source_faces
 from mua.fidelity.source_poses import Sitting, source_poses
-from mua.fidelity.splat_faces import StillFace, splat_faces
+from mua.fidelity.splat_faces import SplatFaces, StillFace
 
 FEW = 16  # expressions: fewer, of fewer triangles than these, are drawn sooner than a process starts
 SMALL = 10_000
@@ -38,7 +39,7 @@ class SourceProcess:
         self._thread = ThreadPoolExecutor(1)  # one question after the other
         self._faces: Iterator[Patch] = iter(())
         self._poses: Iterator[Array] = iter(())
-        self._splat_faces: Iterator[Patch] = iter(())
+        self._splat_faces: SimpleQueue[Patch | None] = SimpleQueue()
 
     def __enter__(self) -> Self:
         return self
@@ -64,7 +65,7 @@ class SourceProcess:
     def draw_faces_of(self, face: StillFace) -> None:
         """Draw the faces of the splats as well, where there is a process; after poses."""
         if self._process is not None:
-            self._splat_faces = self._answers(face, 1 + len(face.expressions))
+            self._splat_faces = self._asked(face, 1 + len(face.expressions))
 
     def faces(self) -> Iterator[Patch]:
         """As of `source_faces`, as soon as they are drawn; none or not all where no process draws them."""
@@ -74,15 +75,22 @@ class SourceProcess:
         """As of `source_poses`, likewise."""
         return self._poses
 
-    def splat_faces(self) -> Iterator[Patch]:
-        """As of `splat_faces`, likewise."""
-        return self._splat_faces
+    def splat_faces(self, here: SplatFaces) -> list[Patch]:
+        """All patches of `here`: the process draws from the first on, this one from the last back, until they meet."""
+        last: list[Patch] = []
+        while (left := len(here) - len(last)) > self._splat_faces.qsize():
+            last.append(here.patch(left - 1))
+        first = [self._splat_faces.get() or here.patch(number) for number in range(left)]  # a process may have ended
+        return first + last[::-1]
 
     def _answers(self, job: object, count: int) -> Iterator[Any]:
+        return _as_they_come(self._asked(job, count))
+
+    def _asked(self, job: object, count: int) -> "SimpleQueue[Any]":
         assert self._process is not None
         answers: SimpleQueue[Any] = SimpleQueue()
         self._thread.submit(_hear, self._process, job, count, answers)
-        return _as_they_come(answers)
+        return answers
 
     def __exit__(self, *_: object) -> None:
         if self._process is not None:
@@ -129,7 +137,7 @@ def _as_they_come(answers: "SimpleQueue[Any]") -> Iterator[Any]:
 def _answer(images: Iterable[object], answers: IO[bytes]) -> None:
     for image in images:
         pickle.dump(image, answers)
-    answers.flush()
+        answers.flush()  # whoever waits counts what has come
 
 
 def main() -> None:
@@ -142,7 +150,8 @@ def main() -> None:
         if names:
             _answer(source_faces(context, source.scene, Poser(source, skeleton).rest(), names), answers)
         _answer(source_poses(context, source.scene, pickle.load(questions)), answers)
-        _answer(splat_faces(context, pickle.load(questions)), answers)
+        faces = SplatFaces(context, pickle.load(questions))
+        _answer(map(faces.patch, range(len(faces))), answers)
 
 
 if __name__ == "__main__":
