@@ -16,7 +16,6 @@ SMOOTHING = 3  # rounds over neighbours
 PATCH = 0.01  # share of the character's surface from which on a starved patch counts
 SCATTERED = 0.02  # share of the surface from which on small patches count together, as colours from a palette do
 PULLED = 2.5  # surface over drawing, in the direction in which a triangle is drawn too short for its chart
-SINGULAR = 1e-15  # determinant over the squared size of a map that has no inverse
 DISTORTED = 0.15  # share of a chart's surface that may be pulled
 MOST_EVENED = (
     1.5  # in length: most that a chart grows beyond its best linear map, or a fold in it would decide its size
@@ -87,11 +86,9 @@ def distorted(
         return np.zeros(0, bool)
     charts = np.unique(charts, return_inverse=True)[1]
     flat = even(corners, positions, charts)
-    maps = _inverses(flat[:, 1:] - flat[:, :1]) @ (positions[:, 1:] - positions[:, :1])
-    uu, vv, uv = (np.einsum("fk,fk->f", maps[:, i], maps[:, j]) for i, j in ((0, 0), (1, 1), (0, 1)))
-    scale = np.sqrt((uu + vv) / 2 + np.hypot((uu - vv) / 2, uv))  # the larger singular value
+    scales = np.linalg.svd(np.linalg.pinv(flat[:, 1:] - flat[:, :1]) @ (positions[:, 1:] - positions[:, :1]))[1]
     surface = areas(positions)
-    pulled = np.bincount(charts, surface * (scale > PULLED))
+    pulled = np.bincount(charts, surface * (scales[:, 0] > PULLED))
     return (pulled > DISTORTED * np.bincount(charts, surface))[charts]
 
 
@@ -107,7 +104,7 @@ def isometric(
     """
     edges = corners[:, 1:] - corners[:, :1]  # [F, 2 edges, 2]
     sides = positions[:, 1:] - positions[:, :1]
-    flat = _inverses(edges)
+    flat = np.linalg.pinv(edges)
     value, axes = np.linalg.eigh(flat @ sides @ sides.transpose(0, 2, 1) @ flat.transpose(0, 2, 1))
     weight = areas(corners) * (value[:, 0] > 0)
     logs = (axes * np.log(np.where(value > 0, value, 1))[:, None]) @ axes.transpose(0, 2, 1)
@@ -129,18 +126,6 @@ def even(
     flat = isometric(corners, positions, charts)
     drawn, surface = np.bincount(charts, areas(flat)), np.bincount(charts, areas(positions))
     return flat * np.clip(np.sqrt(_ratio(surface, drawn)), 1, MOST_EVENED)[charts, None, None]
-
-
-def _inverses(
-    maps: Array,  # [F, 2, 2]
-) -> Array:
-    """Inverses, and pseudo-inverses of singular maps; numpy's takes a singular value decomposition of each."""
-    a, b, c, d = maps.reshape(-1, 4).T
-    determinant, size = a * d - b * c, np.sum(maps**2, axis=(1, 2))
-    adjugate = np.stack([d, -b, -c, a], axis=1).reshape(-1, 2, 2)
-    singular = np.abs(determinant) <= SINGULAR * size
-    over = np.where(singular, size, determinant)
-    return np.where(singular[:, None, None], maps.transpose(0, 2, 1), adjugate) / np.where(over, over, 1)[:, None, None]
 
 
 def _ratio(a: Array, b: Array) -> Array:
