@@ -15,6 +15,7 @@ from mua.fidelity.canvas import Area, opened
 from mua.fidelity.compare import face_of
 from mua.fidelity.face_sheet import face_sheet
 from mua.fidelity.faces import FaceFidelity, compare_faces
+from mua.fidelity.measure import agreement
 from mua.fidelity.posed_source import Moment, Poser
 from mua.fidelity.source_faces import Patch
 from mua.fidelity.source_process import SourceProcess
@@ -118,6 +119,8 @@ def test_an_expression_drawn_where_it_moves_is_the_picture_drawn_whole(
     for part, all_of_it in zip(parts.expressions, whole.expressions, strict=True):
         np.testing.assert_array_equal(part.source, all_of_it.source)
         np.testing.assert_array_equal(part.splats, all_of_it.splats)
+        assert part.agreement.iou == agreement(part.source, part.splats).iou
+        assert part.agreement.psnr == pytest.approx(agreement(part.source, part.splats).psnr)
 
 
 def test_what_a_process_leaves_is_drawn_here(tmp_path: Path) -> None:

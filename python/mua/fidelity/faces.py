@@ -82,9 +82,14 @@ def compare_faces(
 
 
 def _shots(names: Iterable[str], of_source: Iterable[Patch], of_splats: Iterable[Patch]) -> Iterator[ExpressionShot]:
-    """Shots of source and splats, the first of them whole."""
-    at_rest: tuple[Array, Array] | None = None
-    for name, *other in zip(names, of_source, of_splats, strict=False):  # names first: no image more than these
-        at_rest = at_rest or (other[0].image, other[1].image)
-        images = [patch.laid_over(image) for patch, image in zip(other, at_rest, strict=True)]
-        yield ExpressionShot(name, agreement(*images), at_rest, (other[0], other[1]))
+    """Shots of source and splats, the first of them whole; others are measured where they are other."""
+    rest: ExpressionShot | None = None
+    for name, source, splats in zip(names, of_source, of_splats, strict=False):  # names first: no image more than these
+        if rest is None:
+            at_rest = source.image, splats.image
+            yield (rest := ExpressionShot(name, agreement(*at_rest), at_rest, (source, splats)))
+            continue
+        part = source.area.joined(splats.area)
+        before = agreement(part.of(at_rest[0]), part.of(at_rest[1]))
+        after = agreement(source.laid_over_part(at_rest[0], part), splats.laid_over_part(at_rest[1], part))
+        yield ExpressionShot(name, rest.agreement.changed(before, after), at_rest, (source, splats))

@@ -14,6 +14,7 @@ import sys
 from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
+from pathlib import Path
 from queue import SimpleQueue
 from typing import IO, Any, Self, TypeVar
 
@@ -28,6 +29,7 @@ from mua.fidelity.splat_faces import SplatFaces, StillFace
 
 FEW = 16  # expressions: fewer, of fewer triangles than these, are drawn sooner than a process starts
 SMALL = 10_000
+LARGE = 1_000_000  # bytes of a file that, as a rule, has more
 T = TypeVar("T")
 
 
@@ -39,23 +41,34 @@ class SourceProcess:
         self._thread = ThreadPoolExecutor(1)  # one question after the other
         self._faces: Iterator[Patch] = iter(())
         self._poses: Iterator[Array] = iter(())
-        self._splat_faces: SimpleQueue[Patch | None] = SimpleQueue()
+        self._splat_faces: SimpleQueue[Any] = SimpleQueue()  # patches; None where the process ends
 
     def __enter__(self) -> Self:
         return self
 
+    def expect(self, file: Path | None) -> None:
+        """Start the process while a character's file is read that probably has much to draw, as large as it is."""
+        with suppress(OSError):  # what is wrong with a file, its reader says
+            if file is not None and file.stat().st_size > LARGE:
+                self._start()
+
     def begin(self, surfaces: Surfaces) -> None:
-        """Start the process, and with the faces, for a character that has so much to draw that it is worth one."""
+        """Begin with the faces, for a character that has so much to draw that it is worth a process."""
         source, names = surfaces.source, () if surfaces.expressions is None else surfaces.expressions.names
         if source is None or (len(names) < FEW and len(surfaces.faces) < SMALL):
+            self._end()
             return
+        self._start()
+        if self._process is not None:
+            self._faces = self._answers((source, surfaces.skeleton, names), 1 + len(names) if names else 0)
+
+    def _start(self) -> None:
         command = [sys.executable, "-m", "mua.fidelity.source_process"]
         pipe = subprocess.PIPE
-        try:
-            self._process = subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=subprocess.DEVNULL)
-        except OSError:  # no room for it: all is then drawn here
-            return
-        self._faces = self._answers((source, surfaces.skeleton, names), 1 + len(names) if names else 0)
+        with suppress(OSError):  # no room for it: all is then drawn here
+            self._process = self._process or subprocess.Popen(
+                command, stdin=pipe, stdout=pipe, stderr=subprocess.DEVNULL
+            )
 
     def draw_poses(self, sittings: Sequence[Sitting]) -> None:
         """Draw the source in some poses as well, where there is a process."""
@@ -93,15 +106,19 @@ class SourceProcess:
         return answers
 
     def __exit__(self, *_: object) -> None:
-        if self._process is not None:
-            self._process.kill()
-            self._process.wait()
+        self._end()
+
+    def _end(self) -> None:
+        if (process := self._process) is None:
+            return
+        self._process = None
+        process.kill()
+        process.wait()
         self._thread.shutdown()
-        if self._process is not None:
-            for pipe in (self._process.stdin, self._process.stdout):
-                with suppress(OSError):  # for what it has not read
-                    if pipe is not None:
-                        pipe.close()
+        for pipe in (process.stdin, process.stdout):
+            with suppress(OSError):  # for what it has not read
+                if pipe is not None:
+                    pipe.close()
 
 
 def continued(drawn: Iterable[T], here: Iterator[T]) -> Iterator[T]:
