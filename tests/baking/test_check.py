@@ -27,6 +27,8 @@ from mua.motion.match import JointPair
 from mua.motion.quality import MotionQuality
 from mua.motion.reach import Reach
 
+pytestmark = pytest.mark.usefixtures("first_try")
+
 app = typer.Typer()
 app.command()(main)
 
