@@ -1,5 +1,4 @@
-"""Draws a character's file in a process beside this one, while its splats are made, and then the faces of the splats
-together with this one.
+"""Draws a character's file in a process beside this one, while its splats are made, and then shares their faces with it.
 
 The process is this module as a program: it reads a source, a skeleton and the names of expressions from standard input
 and writes images to standard output, then poses and writes theirs, then a still face. It is a process because OpenGL
