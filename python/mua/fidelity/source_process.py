@@ -1,4 +1,4 @@
-"""Draws a character's file in a process beside this one, while its splats are made, and then shares their faces with it.
+"""Draws a character's file in a process beside this one, while its splats are made, and then faces together with it.
 
 The process is this module as a program: it reads a source, a skeleton and the names of expressions from standard input
 and writes images to standard output, then poses and writes theirs, then a still face. It is a process because OpenGL
@@ -93,6 +93,7 @@ class SourceProcess:
         while (left := len(here) - len(last)) > self._splat_faces.qsize():
             last.append(here.patch(left - 1))
         first = [self._splat_faces.get() or here.patch(number) for number in range(left)]  # a process may have ended
+        self._end()  # what else it draws nobody needs
         return first + last[::-1]
 
     def _answers(self, job: object, count: int) -> Iterator[Any]:
