@@ -10,6 +10,8 @@ from commands import Commands
 from mua.baking import check as checks
 from mua.fidelity.compare import Fidelity
 
+pytestmark = pytest.mark.usefixtures("first_try")
+
 
 @pytest.fixture
 def characters(tmp_path: Path) -> Path:

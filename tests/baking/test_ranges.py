@@ -22,6 +22,8 @@ from mua.errors import InputError
 from mua.fidelity.strips import CAPTION
 from mua.pose.clip import Clip, is_range
 
+pytestmark = pytest.mark.usefixtures("first_try")
+
 
 def bake_settings(directory: Path, *, frames: int = 240, motion_range: MotionRange = "full") -> BakeSettings:
     student = replace(SMALL, frames=frames)

@@ -1,6 +1,5 @@
 """The close look at a face: each expression of the file beside the splats' own, drawn only where it moves them."""
 
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -16,6 +15,7 @@ from mua.fidelity.canvas import Area, opened
 from mua.fidelity.compare import face_of
 from mua.fidelity.face_sheet import face_sheet
 from mua.fidelity.faces import FaceFidelity, compare_faces
+from mua.fidelity.measure import agreement
 from mua.fidelity.posed_source import Moment, Poser
 from mua.fidelity.source_faces import Patch
 from mua.fidelity.source_process import SourceProcess
@@ -119,6 +119,8 @@ def test_an_expression_drawn_where_it_moves_is_the_picture_drawn_whole(
     for part, all_of_it in zip(parts.expressions, whole.expressions, strict=True):
         np.testing.assert_array_equal(part.source, all_of_it.source)
         np.testing.assert_array_equal(part.splats, all_of_it.splats)
+        assert part.agreement.iou == agreement(part.source, part.splats).iou
+        assert part.agreement.psnr == pytest.approx(agreement(part.source, part.splats).psnr)
 
 
 def test_what_a_process_leaves_is_drawn_here(tmp_path: Path) -> None:
@@ -126,11 +128,10 @@ def test_what_a_process_leaves_is_drawn_here(tmp_path: Path) -> None:
     teacher = StillTeacher(character, texels=TEXELS)
     whole = drawn_here(character, teacher)
 
-    class Stopping(SourceProcess):
-        def splat_faces(self) -> Iterator[Patch]:
-            return iter([Patch(whole_screen(), whole.rest.splats), Patch(Area(0, 0, 0, 0), np.empty((0, 0, 4)))])
-
-    parts = drawn_here(character, teacher, Stopping())
+    stopping = SourceProcess()
+    for patch in Patch(whole_screen(), whole.rest.splats), Patch(Area(0, 0, 0, 0), np.empty((0, 0, 4))), None:
+        stopping._splat_faces.put(patch)
+    parts = drawn_here(character, teacher, stopping)
     np.testing.assert_array_equal(parts.expressions[0].splats, whole.rest.splats)
     np.testing.assert_array_equal(parts.expressions[1].splats, whole.expressions[1].splats)
 

@@ -20,7 +20,7 @@ from mua.fidelity.compare import face_of, sittings_of
 from mua.fidelity.source_faces import source_faces
 from mua.fidelity.source_poses import source_poses
 from mua.fidelity.source_process import SourceProcess
-from mua.fidelity.splat_faces import splat_faces
+from mua.fidelity.splat_faces import SplatFaces
 from mua.teachers.simulated.still import StillTeacher
 
 
@@ -31,12 +31,16 @@ def surfaces(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Surfaces:
     return read_surfaces(grinning(tmp_path))
 
 
-def test_the_process_draws_what_this_one_would(surfaces: Surfaces) -> None:
+def test_the_process_draws_what_this_one_would(surfaces: Surfaces, monkeypatch: pytest.MonkeyPatch) -> None:
     source, expressions = surfaces.source, surfaces.expressions
     assert source is not None
     assert expressions is not None
+    monkeypatch.setattr(source_process, "LARGE", 0)
     with SourceProcess() as process:
+        process.expect(Path(__file__))
+        begun = process._process
         process.begin(surfaces)
+        assert process._process is begun is not None
         character = build_atlas(surfaces, uv="auto", size=256)
         sittings = sittings_of(character, character.clips, source)
         process.draw_poses(sittings)
@@ -44,10 +48,11 @@ def test_the_process_draws_what_this_one_would(surfaces: Surfaces) -> None:
         face = face_of(StillTeacher(character, texels=96), source.scene, rest)
         assert face is not None
         process.draw_faces_of(face)
-        answers, poses = (list(process.faces()), list(process.splat_faces())), list(process.poses())
+        answers, poses = [list(process.faces()), [process._splat_faces.get() for _ in range(3)]], list(process.poses())
     with opened() as context:
         np.testing.assert_array_equal(poses, list(source_poses(context, source.scene, sittings)))
-        here = list(source_faces(context, source.scene, rest, expressions.names)), list(splat_faces(context, face))
+        splats = SplatFaces(context, face)
+        here = list(source_faces(context, source.scene, rest, expressions.names)), [*map(splats.patch, range(3))]
     for drawn, expected in zip(answers, here, strict=True):
         assert [patch.area for patch in drawn] == [patch.area for patch in expected]
         for patch, other in zip(drawn, expected, strict=True):
@@ -60,7 +65,7 @@ def test_nothing_that_the_process_draws_is_drawn_here(surfaces: Surfaces, monkey
         raise AssertionError
         yield
 
-    for module, name in ((compare, "source_poses"), (faces, "source_faces"), (faces, "splat_faces")):
+    for module, name in ((compare, "source_poses"), (faces, "source_faces")):
         monkeypatch.setattr(module, name, nothing)
     with SourceProcess() as process:
         process.begin(surfaces)
@@ -87,7 +92,23 @@ def test_little_is_left_to_be_drawn_here(surfaces: Surfaces, monkeypatch: pytest
     monkeypatch.setattr(source_process, "FEW", 3)
     monkeypatch.delattr(source_process.subprocess, "Popen")
     with SourceProcess() as process:
+        process.expect(Path("no/such/file"))
+        process.expect(Path(__file__))
         process.begin(surfaces)
+        assert not list(process.faces())
+
+
+def test_a_process_for_a_large_file_with_little_to_draw_ends(
+    surfaces: Surfaces, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(source_process, "FEW", 3)
+    monkeypatch.setattr(source_process, "LARGE", 0)
+    with SourceProcess() as process:
+        process.expect(Path(__file__))
+        started = process._process
+        process.begin(surfaces)
+        assert started is not None
+        assert started.poll() is not None
         assert not list(process.faces())
 
 

@@ -60,6 +60,7 @@ def check(settings: BakeSettings, listener: Listener, *, every_face: bool = Fals
     require_writable(settings.output)
     listener.stage("character")
     with threadpool_limits(1, user_api="blas"), SourceProcess() as process:  # as in a bake
+        process.expect(settings.character)
         character = load_baked_character(settings, read=process.begin)
         return _check(settings, character, listener, process=process, every_face=every_face)
 

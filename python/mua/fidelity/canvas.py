@@ -48,6 +48,10 @@ class Area(NamedTuple):
         pixels, depths = camera.pixels(points)
         return cls(0, 0, *camera.screen) if (depths <= camera.near).any() else cls.about(pixels, pixels, camera.screen)
 
+    def joined(self, other: "Area") -> "Area":
+        """The area around both."""
+        return Area(*map(min, self[:2], other[:2]), *map(max, self[2:], other[2:]))
+
     @property
     def empty(self) -> bool:
         return self.right <= self.left or self.bottom <= self.top

@@ -11,7 +11,7 @@ from mua.fidelity.measure import Agreement, agreement
 from mua.fidelity.posed_source import Moment
 from mua.fidelity.source_faces import Patch, source_faces
 from mua.fidelity.source_process import SourceProcess, continued
-from mua.fidelity.splat_faces import StillFace, splat_faces
+from mua.fidelity.splat_faces import SplatFaces, StillFace
 from mua.scene import Scene
 
 AT_REST = "at rest"
@@ -76,15 +76,20 @@ def compare_faces(
     """
     names = AT_REST, *face.expressions.names
     of_source = continued(process.faces(), source_faces(context, scene, rest, face.expressions.names))
-    of_splats = continued(process.splat_faces(), splat_faces(context, face))
+    of_splats = process.splat_faces(SplatFaces(context, face))
     rest_shot, *shots = _shots(names, of_source, of_splats)
     return FaceFidelity(rest_shot, tuple(shots))
 
 
-def _shots(names: Iterable[str], of_source: Iterator[Patch], of_splats: Iterator[Patch]) -> Iterator[ExpressionShot]:
-    """Shots of source and splats, the first of them whole."""
-    at_rest: tuple[Array, Array] | None = None
-    for name, *other in zip(names, of_source, of_splats, strict=False):  # names first: no image more than these
-        at_rest = at_rest or (other[0].image, other[1].image)
-        images = [patch.laid_over(image) for patch, image in zip(other, at_rest, strict=True)]
-        yield ExpressionShot(name, agreement(*images), at_rest, (other[0], other[1]))
+def _shots(names: Iterable[str], of_source: Iterable[Patch], of_splats: Iterable[Patch]) -> Iterator[ExpressionShot]:
+    """Shots of source and splats, the first of them whole; others are measured where they are other."""
+    rest: ExpressionShot | None = None
+    for name, source, splats in zip(names, of_source, of_splats, strict=False):  # names first: no image more than these
+        if rest is None:
+            at_rest = source.image, splats.image
+            yield (rest := ExpressionShot(name, agreement(*at_rest), at_rest, (source, splats)))
+            continue
+        part = source.area.joined(splats.area)
+        before = agreement(part.of(at_rest[0]), part.of(at_rest[1]))
+        after = agreement(source.laid_over_part(at_rest[0], part), splats.laid_over_part(at_rest[1], part))
+        yield ExpressionShot(name, rest.agreement.changed(before, after), at_rest, (source, splats))

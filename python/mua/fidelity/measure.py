@@ -22,6 +22,15 @@ class Agreement:
     beyond: int  # pixels that only the splats' holds
     squares: float  # summed over the common pixels and the three channels: squared differences of sRGB in 0..1
 
+    def changed(self, before: "Agreement", after: "Agreement") -> "Agreement":
+        """The agreement once that of a part of the images has become another."""
+        return Agreement(
+            common=self.common - before.common + after.common,
+            missing=self.missing - before.missing + after.missing,
+            beyond=self.beyond - before.beyond + after.beyond,
+            squares=self.squares - before.squares + after.squares,
+        )
+
     @property
     def iou(self) -> float:
         """Overlap of the silhouettes: common pixels over all pixels of either; 0 where both images are empty."""

@@ -35,6 +35,13 @@ class Patch(NamedTuple):
         self.area.of(whole)[:] = self.image
         return whole
 
+    def laid_over_part(self, image: Array, part: Area) -> Array:
+        """A part of an image [H, W, 4], in which this one lies, with it."""
+        whole, (left, top, *_) = part.of(image).copy(), part
+        height, width = self.image.shape[:2]
+        whole[self.area.top - top :, self.area.left - left :][:height, :width] = self.image
+        return whole
+
 
 def source_faces(context: moderngl.Context, scene: Scene, rest: Moment, names: Sequence[str]) -> Iterator[Patch]:
     """The image of the file's own meshes at rest, and what is other in that of each expression alone."""

@@ -1,4 +1,4 @@
-"""Draws a character's file in a process beside this one, while its splats are made, and then the faces of the splats.
+"""Draws a character's file in a process beside this one, while its splats are made, and then faces together with it.
 
 The process is this module as a program: it reads a source, a skeleton and the names of expressions from standard input
 and writes images to standard output, then poses and writes theirs, then a still face. It is a process because OpenGL
@@ -13,6 +13,7 @@ import sys
 from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
+from pathlib import Path
 from queue import SimpleQueue
 from typing import IO, Any, Self, TypeVar
 
@@ -23,10 +24,11 @@ from mua.fidelity.canvas import opened
 from mua.fidelity.posed_source import Poser
 from mua.fidelity.source_faces import Patch, source_faces
 from mua.fidelity.source_poses import Sitting, source_poses
-from mua.fidelity.splat_faces import StillFace, splat_faces
+from mua.fidelity.splat_faces import SplatFaces, StillFace
 
 FEW = 16  # expressions: fewer, of fewer triangles than these, are drawn sooner than a process starts
 SMALL = 10_000
+LARGE = 1_000_000  # bytes of a file that, as a rule, has more
 T = TypeVar("T")
 
 
@@ -38,23 +40,34 @@ class SourceProcess:
         self._thread = ThreadPoolExecutor(1)  # one question after the other
         self._faces: Iterator[Patch] = iter(())
         self._poses: Iterator[Array] = iter(())
-        self._splat_faces: Iterator[Patch] = iter(())
+        self._splat_faces: SimpleQueue[Any] = SimpleQueue()  # patches; None where the process ends
 
     def __enter__(self) -> Self:
         return self
 
+    def expect(self, file: Path | None) -> None:
+        """Start the process while a character's file is read that probably has much to draw, as large as it is."""
+        with suppress(OSError):  # what is wrong with a file, its reader says
+            if file is not None and file.stat().st_size > LARGE:
+                self._start()
+
     def begin(self, surfaces: Surfaces) -> None:
-        """Start the process, and with the faces, for a character that has so much to draw that it is worth one."""
+        """Begin with the faces, for a character that has so much to draw that it is worth a process."""
         source, names = surfaces.source, () if surfaces.expressions is None else surfaces.expressions.names
         if source is None or (len(names) < FEW and len(surfaces.faces) < SMALL):
+            self._end()
             return
+        self._start()
+        if self._process is not None:
+            self._faces = self._answers((source, surfaces.skeleton, names), 1 + len(names) if names else 0)
+
+    def _start(self) -> None:
         command = [sys.executable, "-m", "mua.fidelity.source_process"]
         pipe = subprocess.PIPE
-        try:
-            self._process = subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=subprocess.DEVNULL)
-        except OSError:  # no room for it: all is then drawn here
-            return
-        self._faces = self._answers((source, surfaces.skeleton, names), 1 + len(names) if names else 0)
+        with suppress(OSError):  # no room for it: all is then drawn here
+            self._process = self._process or subprocess.Popen(
+                command, stdin=pipe, stdout=pipe, stderr=subprocess.DEVNULL
+            )
 
     def draw_poses(self, sittings: Sequence[Sitting]) -> None:
         """Draw the source in some poses as well, where there is a process."""
@@ -64,7 +77,7 @@ class SourceProcess:
     def draw_faces_of(self, face: StillFace) -> None:
         """Draw the faces of the splats as well, where there is a process; after poses."""
         if self._process is not None:
-            self._splat_faces = self._answers(face, 1 + len(face.expressions))
+            self._splat_faces = self._asked(face, 1 + len(face.expressions))
 
     def faces(self) -> Iterator[Patch]:
         """As of `source_faces`, as soon as they are drawn; none or not all where no process draws them."""
@@ -74,26 +87,38 @@ class SourceProcess:
         """As of `source_poses`, likewise."""
         return self._poses
 
-    def splat_faces(self) -> Iterator[Patch]:
-        """As of `splat_faces`, likewise."""
-        return self._splat_faces
+    def splat_faces(self, here: SplatFaces) -> list[Patch]:
+        """All patches of `here`: the process draws from the first on, this one from the last back, until they meet."""
+        last: list[Patch] = []
+        while (left := len(here) - len(last)) > self._splat_faces.qsize():
+            last.append(here.patch(left - 1))
+        first = [self._splat_faces.get() or here.patch(number) for number in range(left)]  # a process may have ended
+        self._end()  # what else it draws nobody needs
+        return first + last[::-1]
 
     def _answers(self, job: object, count: int) -> Iterator[Any]:
+        return _as_they_come(self._asked(job, count))
+
+    def _asked(self, job: object, count: int) -> "SimpleQueue[Any]":
         assert self._process is not None
         answers: SimpleQueue[Any] = SimpleQueue()
         self._thread.submit(_hear, self._process, job, count, answers)
-        return _as_they_come(answers)
+        return answers
 
     def __exit__(self, *_: object) -> None:
-        if self._process is not None:
-            self._process.kill()
-            self._process.wait()
+        self._end()
+
+    def _end(self) -> None:
+        if (process := self._process) is None:
+            return
+        self._process = None
+        process.kill()
+        process.wait()
         self._thread.shutdown()
-        if self._process is not None:
-            for pipe in (self._process.stdin, self._process.stdout):
-                with suppress(OSError):  # for what it has not read
-                    if pipe is not None:
-                        pipe.close()
+        for pipe in (process.stdin, process.stdout):
+            with suppress(OSError):  # for what it has not read
+                if pipe is not None:
+                    pipe.close()
 
 
 def continued(drawn: Iterable[T], here: Iterator[T]) -> Iterator[T]:
@@ -129,7 +154,7 @@ def _as_they_come(answers: "SimpleQueue[Any]") -> Iterator[Any]:
 def _answer(images: Iterable[object], answers: IO[bytes]) -> None:
     for image in images:
         pickle.dump(image, answers)
-    answers.flush()
+        answers.flush()  # whoever waits counts what has come
 
 
 def main() -> None:
@@ -142,7 +167,8 @@ def main() -> None:
         if names:
             _answer(source_faces(context, source.scene, Poser(source, skeleton).rest(), names), answers)
         _answer(source_poses(context, source.scene, pickle.load(questions)), answers)
-        _answer(splat_faces(context, pickle.load(questions)), answers)
+        faces = SplatFaces(context, pickle.load(questions))
+        _answer(map(faces.patch, range(len(faces))), answers)
 
 
 if __name__ == "__main__":

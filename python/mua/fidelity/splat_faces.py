@@ -3,7 +3,6 @@
 It loads little, because a process of its own draws these images.
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import moderngl
@@ -33,15 +32,11 @@ class StillFace:
     expressions: Expressions
 
 
-def splat_faces(context: moderngl.Context, face: StillFace) -> Iterator[Patch]:
-    """The image of the splats at rest, and what is other in that of each expression alone."""
-    of_splats = _Splats(context, face)
-    yield Patch(Area(0, 0, *SCREEN), of_splats.at_rest)
-    yield from map(of_splats.expressed, range(len(face.expressions)))
+class SplatFaces:
+    """The image of the splats at rest, and what is other in that of each expression alone.
 
-
-class _Splats:
-    """Draws the splats of the pose at rest, bent as an avatar bends them; only those that an expression moves anew."""
+    Splats of the pose at rest are bent as an avatar bends them; only those that an expression moves are drawn anew.
+    """
 
     def __init__(self, context: moderngl.Context, face: StillFace) -> None:
         self._face = face
@@ -51,8 +46,14 @@ class _Splats:
         self._layers = self._paint.layers(self._quads)
         self.at_rest = self._paint.drawn(self._quads)
 
-    def expressed(self, number: int) -> Patch:
-        """What is other in one expression."""
+    def __len__(self) -> int:
+        return 1 + len(self._face.expressions)
+
+    def patch(self, number: int) -> Patch:
+        """The first is the image at rest, the others what is other in each expression."""
+        return self._expressed(number - 1) if number else Patch(Area(0, 0, *SCREEN), self.at_rest)
+
+    def _expressed(self, number: int) -> Patch:
         face, texels = self._face, self._face.rig.texels
         weights = np.zeros(len(face.expressions), np.float32)
         weights[number] = 1

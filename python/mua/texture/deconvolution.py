@@ -24,28 +24,43 @@ def deconvolved(
     once for each of a few widths.
     """
     narrowest, widest = float(spreads.min()), float(spreads.max())
+    size = len(picture) // FINER
+    points = picture.reshape(size, FINER, size, FINER, 3)
+    shown = {at: fft.rfft2(points[:, at[0], :, at[1]], axes=(0, 1)) for at in np.ndindex(FINER, FINER)}
     if narrowest == widest:
-        return _solved(picture, opacity, narrowest)
+        return _solved(shown, opacity, narrowest, size)
     widths = np.linspace(narrowest, widest, LEVELS)
     place = (spreads - narrowest) * ((LEVELS - 1) / (widest - narrowest))
     shares = (np.maximum(1 - np.abs(place - level), 0)[..., None] for level in range(LEVELS))
-    solved = (_solved(picture, opacity, width) for width in widths)
+    solved = (_solved(shown, opacity, width, size) for width in widths)
     return np.asarray(sum(share * colors for share, colors in zip(shares, solved, strict=True)))
 
 
-def _solved(picture: Array, opacity: float, spread: float) -> Array:
-    """The colours where all surfels are equally wide."""
-    size = len(picture) // FINER
-    points = picture.reshape(size, FINER, size, FINER, 3)
-    own = fft.rfft2(points.mean(axis=(1, 3)), axes=(0, 1))
-    rows = FINER**2 * DIRECTIONS
-    total, power = DAMPING**2 * rows * own, np.full((1, 1, 1), DAMPING**2 * rows)
-    for y, x in np.ndindex(FINER, FINER):
-        shown = fft.rfft2(points[:, y, :, x], axes=(0, 1))
-        for weights in blending((np.array([x, y]) + 0.5) / FINER - 0.5, opacity, spread):
-            response = _response(weights, size)[..., None]
-            total, power = total + np.conj(response) * shown, power + np.abs(response) ** 2
-    return np.clip(fft.irfft2(total / power, s=(size, size), axes=(0, 1)), 0, 1)
+def _solved(
+    shown: dict[tuple[int, ...], Array],  # by row and column of a point in its texel: transforms of the image there
+    opacity: float,
+    spread: float,
+    size: int,
+) -> Array:
+    """The colours [size, size, 3] where all surfels are equally wide."""
+    total, products = np.zeros_like(shown[0, 0]), np.zeros((4 * AROUND + 1,) * 2)
+    for (y, x), colors in shown.items():
+        weights = blending((np.array([x, y]) + 0.5) / FINER - 0.5, opacity, spread)
+        response = np.conj(_response(weights.sum(axis=0), size)) + DAMPING**2 * DIRECTIONS
+        total += response[..., None] * colors
+        products += _own_products(weights)
+    power = _response(products, size).real + DAMPING**2 * FINER**2 * DIRECTIONS
+    return np.clip(fft.irfft2(total / power[..., None], s=(size, size), axes=(0, 1)), 0, 1)
+
+
+def _own_products(weights: Array) -> Array:
+    """Sums [2 n - 1, 2 n - 1] of the products of weights [k, n, n] with themselves moved by up to n - 1 to each side.
+
+    Their Fourier transform is the sum of the squares of the weights' own.
+    """
+    wide = (2 * weights.shape[1] - 1,) * 2
+    squares = np.abs(fft.fft2(weights, s=wide)) ** 2
+    return np.asarray(fft.fftshift(fft.ifft2(squares.sum(axis=0)).real))
 
 
 def blending(
@@ -70,8 +85,8 @@ def blending(
 
 
 def _response(weights: Array, size: int) -> Array:
-    """The Fourier transform of weighted sums over a texel's surroundings in a periodic texture."""
+    """The Fourier transform of weighted sums over a texel's surroundings [n, n] in a periodic texture."""
     kernel = np.zeros((size, size))
-    back = -np.arange(-AROUND, AROUND + 1) % size
+    back = (len(weights) // 2 - np.arange(len(weights))) % size
     np.add.at(kernel, (back[:, None], back[None, :]), weights)
     return np.asarray(fft.rfft2(kernel))
