@@ -52,9 +52,11 @@ def served(feed: Feed) -> Iterator[int]:
     with serving(live_site(player_site([], Shown("live"))), {PATH: feed}) as server:
         thread = Thread(target=server.serve_forever, args=(0.02,))
         thread.start()
-        yield server.server_port
-        server.shutdown()
-        thread.join()
+        try:
+            yield server.server_port
+        finally:
+            server.shutdown()
+            thread.join()
 
 
 @pytest.fixture
