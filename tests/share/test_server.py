@@ -4,6 +4,7 @@ import http.client
 import re
 import signal
 import socket
+import struct
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -48,6 +49,20 @@ def ask(port: int, path: str, method: str = "GET", **headers: str) -> tuple[int,
         connection.request(method, path, headers=headers)
         with connection.getresponse() as answer:
             return answer.status, dict(answer.getheaders()), answer.read()
+
+
+def test_a_connection_that_is_reset_prints_nothing(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    with serving({"index.html": b"1"}) as server:
+        server.daemon_threads = False  # so that closing waits for the answer
+        thread = Thread(target=server.handle_request)
+        thread.start()
+        client = socket.create_connection((AUTHORITY, server.server_port))
+        client.sendall(b"GET / HTTP/1.1\r\nHost: another\r\n\r\n")
+        client.recv(1)
+        client.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+        client.close()
+        thread.join()
+    assert capfd.readouterr().err == ""
 
 
 class Changing(type(Path())):  # type: ignore[misc]  # the class of paths on this system

@@ -68,6 +68,11 @@ class _Handler(BaseHTTPRequestHandler):
     site: Site
     streams: Mapping[str, Stream]
 
+    def handle(self) -> None:
+        """Answer requests until the browser closes or resets the connection."""
+        with suppress(ConnectionError):
+            super().handle()
+
     def do_GET(self) -> None:
         stream = self.streams.get(self._named)
         if stream is None:
