@@ -99,10 +99,13 @@ def test_an_element_plays_on_in_another_document_and_looks_the_same(opened: Open
 
 
 def test_an_element_in_another_window_needs_no_frames_of_its_page(opened: Open) -> None:
-    page = opened()
+    ask = "((ask) => (globalThis.requestAnimationFrame = (draw) => ask((now) => globalThis.away || draw(now))))"
+    page = opened(before=f"{ask}(requestAnimationFrame)")
     window = "document.querySelector('iframe').contentWindow"
     page.evaluate(f"(globalThis.gone = {ELEMENT}, document.body.append(document.createElement('iframe')), 0)")
-    page.evaluate(f"(globalThis.requestAnimationFrame = () => 0, {window}.document.body.append(gone), fake.time = 1.5)")
+    page.evaluate(f"(globalThis.away = true, {window}.document.body.append(gone))")
+    page.evaluate(f"new Promise((done) => {window}.setTimeout(done, 200))")  # observers have said what they see
+    page.evaluate("(fake.time = 1.5)")
     clock = "gone.shadowRoot.querySelector('.clock').textContent"
     page.wait(f"{clock}.startsWith('1.5')")
     page.evaluate("(gone.pause(), globalThis.before = fake.drawn, gone.turn(9, 0))")
