@@ -102,6 +102,11 @@ def _written(shape: tuple[int | None, ...]) -> str:
     return f"[{', '.join('any' if n is None else str(n) for n in shape)}]"
 
 
+def amount(count: int, noun: str) -> str:
+    """How many of what, as in a sentence: 1 clip, 2,000 frames."""
+    return f"{count:,} {noun}{'' if count == 1 else 's'}"
+
+
 def listed(words: Sequence[str]) -> str:
     """Join words as in a sentence: a, b or c."""
     return " or ".join(part for part in (", ".join(words[:-1]), words[-1]) if part)

@@ -132,9 +132,9 @@ def test_what_is_wrong_comes_first_and_few_joints_are_named(capsys: pytest.Captu
     assert lines[-2] == "a note"
     few = "joint 3, joint 4, joint 5, joint 6, joint 7 and 4 others"
     assert lines[-1] == f"The motion moves 3 joints, and not {few}; the mapping file names all."
-    show(Console(width=120), Check(None, (), pairs, (), (), (), ()))
+    show(Console(width=120), Check(None, (), pairs[:1], (), (), (), ()))
     lines = capsys.readouterr().out.splitlines()
-    assert lines == ["Nothing looks wrong.", "The motion moves 3 joints, all that have skin."]
+    assert lines == ["Nothing looks wrong.", "The motion moves 1 joint, all that have skin."]
 
 
 @pytest.mark.usefixtures("uncompared")

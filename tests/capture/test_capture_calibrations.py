@@ -371,7 +371,7 @@ def test_videos_become_a_capture(given: tuple[object, ...], command: Commands, t
             write_video(source / kind / f"{name}.mp4", pictures, rate=25)
     calibration = write(tmp_path, "anipose")
     ended = command("capture", "describe", source, *given, "--calibration", calibration, "-o", tmp_path / "out")
-    assert "2 cameras, 5 frames in 1 clips" in ended.out, ended
+    assert "2 cameras, 5 frames in 1 clip" in ended.out, ended
     capture = open_capture(tmp_path / "out")
     assert (capture.rate, [camera.name for camera in capture.cameras]) == (25, ["cam01", "cam02"])
     np.testing.assert_allclose(capture.camera("cam02").world_to_camera, MATRICES[1], atol=ROUNDING)
@@ -421,7 +421,7 @@ def test_pictures_are_found_by_the_names_of_data_sets(
     ask = command("capture", *line).sentence
     assert f"with --calibration {source / 'calibration.csv'}, the person with --template" in ask
     ended = command("capture", *line, *given, "--calibration", source)
-    assert "2 cameras, 3 frames in 1 clips" in ended.out, ended
+    assert "2 cameras, 3 frames in 1 clip" in ended.out, ended
     view = open_capture(tmp_path / "out").view("all", 2, NAMES[1])
     assert (view.mask == 1).all()
     assert view.image.max() < 0.1

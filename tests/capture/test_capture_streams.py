@@ -116,7 +116,7 @@ def person(tmp_path_factory: pytest.TempPathFactory) -> Capture:
 def test_videos_become_a_capture(source: Path, person: Capture, command: Commands, tmp_path: Path) -> None:
     given = ("--template", person.template, "--motion", person.clips[0].motion)
     ended = command("capture", "describe", source, *given, "-o", tmp_path / "out")
-    assert "3 cameras, 5 frames in 1 clips" in ended.out, ended
+    assert "3 cameras, 5 frames in 1 clip" in ended.out, ended
     capture = open_capture(tmp_path / "out")
     assert (capture.rate, [camera.name for camera in capture.cameras]) == (25, ["stream000", "stream001", "stream002"])
     view = capture.view("all", 4, "stream001")

@@ -71,7 +71,7 @@ def test_one_take_may_be_described_alone(subject: Path, command: Commands, tmp_p
     shutil.rmtree(subject / "testing")
     (subject.parent / "Subject_0_metadata").rename(subject / "metadata")
     ended = command("capture", "describe", subject, "-o", tmp_path / "out", "--rate", 50)
-    assert "4 cameras, 4 frames in 1 clips" in ended.out, ended
+    assert "4 cameras, 4 frames in 1 clip" in ended.out, ended
     found = open_capture(tmp_path / "out")
     assert found.rate == 50
     assert len(found.motion("training")) == 4  # one pose for each frame, at any rate
@@ -86,7 +86,7 @@ def test_poses_and_template_may_lie_elsewhere(subject: Path, command: Commands, 
     (metadata / "cameras.calib").rename(subject / "training" / "cameras.calib")
     given = ("--template", elsewhere / "tube.character", "--motion", poses)
     ended = command("capture", "describe", subject / "training", *given, "-o", tmp_path / "out")
-    assert "4 cameras, 4 frames in 1 clips" in ended.out, ended
+    assert "4 cameras, 4 frames in 1 clip" in ended.out, ended
     assert open_capture(tmp_path / "out").template == elsewhere / "tube.character"
     poses.unlink()
 

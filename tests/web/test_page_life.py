@@ -98,6 +98,20 @@ def test_an_element_plays_on_in_another_document_and_looks_the_same(opened: Open
         assert page.evaluate(f"[fakes, fake.disposed, fake.started, {look}]") == [1, False, True, "absolute"]
 
 
+def test_an_element_in_another_window_needs_no_frames_of_its_page(opened: Open) -> None:
+    ask = "((ask) => (globalThis.requestAnimationFrame = (draw) => ask((now) => globalThis.away || draw(now))))"
+    page = opened(before=f"{ask}(requestAnimationFrame)")
+    window = "document.querySelector('iframe').contentWindow"
+    page.evaluate(f"(globalThis.gone = {ELEMENT}, document.body.append(document.createElement('iframe')), 0)")
+    page.evaluate(f"(globalThis.away = true, {window}.document.body.append(gone))")
+    page.evaluate(f"new Promise((done) => {window}.setTimeout(done, 200))")  # observers have said what they see
+    page.evaluate("(fake.time = 1.5)")
+    clock = "gone.shadowRoot.querySelector('.clock').textContent"
+    page.wait(f"{clock}.startsWith('1.5')")
+    page.evaluate("(gone.pause(), globalThis.before = fake.drawn, gone.turn(9, 0))")
+    page.wait("fake.drawn > before")
+
+
 def test_a_paused_element_of_another_size_is_drawn_again(opened: Open) -> None:
     page = opened()
     page.press(" ")

@@ -149,7 +149,8 @@ def test_an_element_of_which_only_the_height_is_given_stays_in_its_place(opened:
 def test_a_page_with_the_policy_of_the_guide_plays_and_shows_its_poster(browser: Browser, serve: Serve) -> None:
     said = re.search(r"content security policy needs (.*?),\s+as the", GUIDE.read_text(), re.DOTALL)
     assert said
-    policy = "; ".join(["default-src 'none'", *re.findall(r"`(.*?)`", said[1].replace("\n", " "))])
+    trusting = ["default-src 'none'", "require-trusted-types-for 'script'", "trusted-types 'none'"]
+    policy = "; ".join([*trusting, *re.findall(r"`(.*?)`", said[1].replace("\n", " "))])
     html = f"""<!doctype html><meta http-equiv="Content-Security-Policy" content="{policy}">
       <mua-avatar src="hero.muaavatar" poster="icon.svg" controls></mua-avatar>
       <script type="module" src="element.js"></script>"""

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from mua.arguments import describe, finite_array, float_type, unit_quaternions, whole_number
+from mua.arguments import amount, describe, finite_array, float_type, unit_quaternions, whole_number
 from mua.arrays import Array
 from mua.avatar.coarser import at_level, coarsest
 from mua.avatar.decode import PoseWindow, Splats, decode, decode_clip_frame
@@ -124,11 +124,10 @@ class Avatar(Model):
         raise InputError(f"clip is {describe(name)}; the avatar holds {held}")
 
     def __repr__(self) -> str:
-        texels, joints = self.rig.texels, len(self.rig.skeleton.names)
-        clips = "1 clip" if len(self.clips) == 1 else f"{len(self.clips)} clips"
+        texels, joints = self.rig.texels, amount(len(self.rig.skeleton.names), "joint")
         return (
-            f"<mua.Avatar {self.name!r}: {joints} joints, {len(self.rig.mesh.vertices):,} vertices, "
-            f"{len(texels.texels):,} splats of {texels.size} x {texels.size} texels, {clips}>"
+            f"<mua.Avatar {self.name!r}: {joints}, {len(self.rig.mesh.vertices):,} vertices, "
+            f"{len(texels.texels):,} splats of {texels.size} x {texels.size} texels, {amount(len(self.clips), 'clip')}>"
         )
 
     def _checked(self, clip: Clip, frame: int) -> Clip:

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from mua.arguments import amount
 from mua.errors import InputError
 from mua.pose.clip import Clip, is_range
 from mua.pose.skeleton import Pose
@@ -91,9 +92,9 @@ def describe_plan(planned: Sequence[PlannedClip], ranges: Sequence[PlannedClip],
         own = f"all {there:,} training frames of {_clips(training)} ({asks})"
     parts = [own]
     if count := sum(len(clip.wanted) for clip in held):
-        parts.append(f"{count:,} held-out frames to measure errors on")
+        parts.append(f"{amount(count, 'held-out frame')} to measure errors on")
     if count := sum(len(clip.wanted) for clip in ranges):
-        parts.append(f"{count:,} frames of the built-in range of motion (--motion-range none leaves them out)")
+        parts.append(f"{amount(count, 'frame')} of the built-in range of motion (--motion-range none leaves them out)")
     return f"Recorded are {', '.join(parts[:-1])}{' and ' if len(parts) > 1 else ''}{parts[-1]}."
 
 
@@ -105,7 +106,7 @@ def usual_poses(planned: Sequence[PlannedClip]) -> list[Pose]:
 
 
 def _clips(planned: Sequence[PlannedClip]) -> str:
-    return "1 clip" if len(planned) == 1 else f"{len(planned)} clips"
+    return amount(len(planned), "clip")
 
 
 def _shares(total: int, parts: int) -> list[int]:

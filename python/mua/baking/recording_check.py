@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mua import rotation
+from mua.arguments import amount
 from mua.arrays import Array
 from mua.channels import ATTRIBUTES, SH_C0
 from mua.pose.clip import Clip
@@ -130,7 +131,7 @@ def _figures(recording: Recording, frames: list[WholeFrame]) -> dict[str, str]:
     held, training = recording.count(held_out=True), recording.count()
     figures = {
         "figure": f"{box[1]:.2f} m high, {box[0]:.2f} m wide, {box[2]:.2f} m deep",
-        "rig": f"{len(rig.skeleton.names)} joints, the root is {rig.skeleton.names[rig.skeleton.root]}; "
+        "rig": f"{amount(len(rig.skeleton.names), 'joint')}, the root is {rig.skeleton.names[rig.skeleton.root]}; "
         f"a template of {len(rig.mesh.vertices):,} vertices; "
         f"{len(rig.texels.texels):,} texels of {rig.texels.size} x {rig.texels.size}",
         "frames": f"{poses:,} at {rate:g} per second ({poses / rate:.1f} s); {training:,} recorded to train on, "

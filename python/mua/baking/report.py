@@ -9,6 +9,7 @@ from pathlib import Path
 from rich.markup import escape
 from rich.table import Table
 
+from mua.arguments import amount
 from mua.baking.student_errors import MESH, PICTURES, TRAINING, UNITS, Errors, held_out_errors
 from mua.channels import ATTRIBUTES
 
@@ -158,10 +159,9 @@ def closing(stored: Stored, output: Path) -> str:
     size = f"{output}: {stored.file_bytes / 1e6:.1f} MB"
     if not stored.clips:
         return f"{size}, no clip stored for playback"
-    clips = "1 clip" if stored.clips == 1 else f"{stored.clips} clips"
     held = f"{stored.clip_bytes / 1e6:.1f} MB" if stored.clip_bytes >= 1e6 else f"{stored.clip_bytes / 1e3:.0f} kB"
     together = " together" if stored.clips > 1 else ""
-    return f"{size}, of which {held} are {clips} ({duration(stored.seconds)}{together})"
+    return f"{size}, of which {held} are {amount(stored.clips, 'clip')} ({duration(stored.seconds)}{together})"
 
 
 def duration(seconds: float) -> str:

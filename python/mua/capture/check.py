@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mua.arguments import amount
 from mua.capture.camera import CaptureCamera
 from mua.capture.capture import Capture
 from mua.capture.diagnose import misplaced_tracks, remarks, unlikely
@@ -111,15 +112,15 @@ def summary(capture: Capture) -> Sequence[str]:
     """The content of a capture as it is understood, line by line."""
     held_out = [camera.name for camera in capture.cameras if camera.held_out]
     clips = [
-        f"{clip.name} ({clip.frames} frames, poses {clip.first} to {clip.first + clip.frames - 1}"
+        f"{clip.name} ({amount(clip.frames, 'frame')}, poses {clip.first} to {clip.first + clip.frames - 1}"
         f"{', held out' if clip.held_out else ''})"
         for clip in capture.clips
     ]
-    template, joints = capture.surfaces, len(capture.surfaces.skeleton.names)
+    template, joints = capture.surfaces, amount(len(capture.surfaces.skeleton.names), "joint")
     height = np.ptp(template.vertices[:, 1])
     return (
-        f"{capture.name}: {len(capture.cameras)} cameras, {capture.rate:g} frames per second",
+        f"{capture.name}: {amount(len(capture.cameras), 'camera')}, {capture.rate:g} frames per second",
         f"held out: {', '.join(held_out) or 'no camera'}",
         f"clips: {', '.join(clips)}",
-        f"template: {capture.template.name}, {height:.2f} m tall, {len(template.vertices):,} vertices, {joints} joints",
+        f"template: {capture.template.name}, {height:.2f} m tall, {len(template.vertices):,} vertices, {joints}",
     )

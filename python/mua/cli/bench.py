@@ -12,6 +12,7 @@ from rich.box import SIMPLE_HEAD
 from rich.table import Table
 from rich.text import Text
 
+from mua.arguments import amount
 from mua.asset.write import write
 from mua.avatar.camera import EYE_DISTANCE
 from mua.bench.devices import DEVICES, model_device
@@ -191,8 +192,8 @@ def _table(measured: "Measured") -> Table:
 
 def _heading(measured: "Measured") -> str:
     width, height = measured.screen
-    eyes = "1 eye" if measured.eyes == 1 else f"{measured.eyes} eyes"
     frames = "1 frame" if measured.frames == 1 else f"medians of {measured.frames} frames"
+    eyes = amount(measured.eyes, "eye")
     return (
         f"{measured.avatar} on {measured.device}: {frames}, {eyes} of {width} x {height} pixels, "
         f"{measured.visible:,} of {measured.splats:,} splats visible."

@@ -8,6 +8,7 @@ from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
 
+from mua.arguments import amount
 from mua.cli.capture_poses import poses
 from mua.cli.console import printer, say
 from mua.cli.failure import run_commands
@@ -126,7 +127,8 @@ def describe(
     written = write_capture(capture)
     open_capture(output)  # which refuses what cannot be
     frames = sum(clip.frames for clip in capture.clips)
-    say(printer(), f"{written}: {len(capture.cameras)} cameras, {frames} frames in {len(capture.clips)} clips")
+    filmed = f"{amount(frames, 'frame')} in {amount(len(capture.clips), 'clip')}"
+    say(printer(), f"{written}: {amount(len(capture.cameras), 'camera')}, {filmed}")
 
 
 def run() -> None:

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from mua.arguments import amount
 from mua.capture import Capture, open_capture
 from mua.capture.store import ViewStore
 from mua.cli.console import printer
@@ -37,7 +38,7 @@ def compare(settings: EvaluationSettings) -> None:
     judged = [one for one in looked_at if one.scores]
     if not judged:
         raise InputError(f"{capture.file}: nobody is seen in any of the {len(chosen)} views by cameras with held_out")
-    about = [f"{len(judged)} images of {capture.name}, inside the box around the mask, over white."]
+    about = [f"{amount(len(judged), 'image')} of {capture.name}, inside the box around the mask, over white."]
     about += [*capture_report.nobody_there([one.shot for one in looked_at if not one.scores]), *training]
     found: list[capture_scores.Standing] = []
     plots: dict[str, bytes] = {}

@@ -8,6 +8,7 @@ from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
 
+from mua.arguments import amount
 from mua.cli.console import printer, say
 from mua.errors import InputError
 from mua.files.inputs import require_file
@@ -62,7 +63,7 @@ def poses(
     fitted = fit_keypoints(read_keypoints(keypoints, axes=read_axes(axes), scale=scale, rate=rate), surfaces)
     write_poses(output, surfaces.skeleton, fitted.clip)
     _show(console, fitted)
-    say(console, f"{output}: {len(fitted.clip)} poses at {fitted.clip.rate:g} frames per second")
+    say(console, f"{output}: {amount(len(fitted.clip), 'pose')} at {fitted.clip.rate:g} frames per second")
 
 
 def _show(console: Console, fitted: "Fitted") -> None:

@@ -7,6 +7,7 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
+from mua.arguments import amount
 from mua.baking.check import Check, as_dict, check, write_json
 from mua.baking.check_many import GOOD, LOOK, REFUSED, Checked, check_many
 from mua.baking.settings import BakeSettings
@@ -76,7 +77,7 @@ def show(console: Console, found: Check, *, verbose: bool = False) -> None:
     for sentence in found.warnings[:shown]:
         say(console, f"Look at this: {sentence}")
     if len(found.warnings) > shown:
-        say(console, f"{len(found.warnings) - shown} more sentences like these (--verbose prints them).")
+        say(console, f"{amount(len(found.warnings) - shown, 'more sentence')} like these (--verbose prints them).")
     if not found.warnings:
         say(console, "Nothing looks wrong.")
     if found.fidelity is not None:
@@ -87,7 +88,7 @@ def show(console: Console, found: Check, *, verbose: bool = False) -> None:
         motions = found.motions if verbose else sorted(found.motions, key=lambda motion: -len(motion.flaws))[:SCREEN]
         console.print(_motion_table(tuple(motions)))
         if len(found.motions) > len(motions):
-            say(console, f"{len(found.motions) - len(motions)} more clips (--verbose prints them).")
+            say(console, f"{amount(len(found.motions) - len(motions), 'more clip')} (--verbose prints them).")
     elif found.motions:
         brought = found.matched or found.unmatched  # by a motion file
         whose = (
@@ -114,7 +115,7 @@ def _face(face: FaceFidelity) -> str:
     few = len(face.least_like)
     shown = f" The picture has the {few} least like it (--verbose: all)." if few < len(decibels) else ""
     return (
-        f"Face: {len(decibels)} expressions at weight 1 compared with the source: least {decibels[0]:.1f} dB "
+        f"Face: {amount(len(decibels), 'expression')} at weight 1 compared with the source: least {decibels[0]:.1f} dB "
         f"({face.worst.name}), median {decibels[len(decibels) // 2]:.1f} dB, at rest {rest:.1f} dB.{shown}"
     )
 
@@ -155,12 +156,13 @@ def _motion_table(motions: tuple[MotionQuality, ...]) -> Table:
 
 def _joints(found: Check) -> str:
     """How many joints the motion moves, and the first of those that it leaves still; the mapping file has all."""
-    moved = f"The motion moves {len(found.matched)} joints"
+    moved = f"The motion moves {amount(len(found.matched), 'joint')}"
     if not found.unmatched:
         return f"{moved}, all that have skin."
     few = ", ".join(found.unmatched[:FEW])
     more = len(found.unmatched) - FEW
-    return f"{moved}, and not {few}{f' and {more} others' if more > 0 else ''}; the mapping file names all."
+    others = amount(more, "other")
+    return f"{moved}, and not {few}{f' and {others}' if more > 0 else ''}; the mapping file names all."
 
 
 def _measured(value: float | None, shape: str) -> str:

@@ -8,6 +8,7 @@ import typer
 from rich.markup import escape
 from rich.table import Table
 
+from mua.arguments import amount
 from mua.asset.read import decode_tree, load
 from mua.asset.summary import summary
 from mua.cli.console import figures, printer
@@ -54,18 +55,18 @@ def _whole(held: dict[str, Any]) -> Table:
         "format": f"{held['format']}, {held['storage']}, metres, Y up, right-handed",
         "producer": held["producer"],
         "notes": held["notes"],
-        "skeleton": f"{len(skeleton['joints'])} joints, root {skeleton['root']}",
-        "descriptor": f"{descriptor['numbers']} numbers: {descriptor['frames']} frames at {descriptor['rate']:g} a "
-        f"second, root and {len(descriptor['joints'])} joints{moved}, "
+        "skeleton": f"{amount(len(skeleton['joints']), 'joint')}, root {skeleton['root']}",
+        "descriptor": f"{descriptor['numbers']} numbers: {amount(descriptor['frames'], 'frame')} at "
+        f"{descriptor['rate']:g} a second, root and {amount(len(descriptor['joints']), 'joint')}{moved}, "
         f"{'heading removed' if descriptor['heading_removed'] else 'world heading'}",
         "template": f"{template['vertices']} vertices, {template['triangles']} triangles, "
-        f"{template['pca_components']} PCA components",
+        f"{amount(template['pca_components'], 'PCA component')}",
         "expressions": f"{len(held['expressions'])}: {', '.join(held['expressions'])}"
         if held["expressions"]
         else "none",
         "expressions' rules": ", ".join(held["ruled_expressions"]) or "none",
         "texels": f"{texels['used']} of {texels['side']} x {texels['side']}",
-        "wavelet": f"{wavelet['name']}, {wavelet['levels']} levels",
+        "wavelet": f"{wavelet['name']}, {amount(wavelet['levels'], 'level')}",
         "geometry ranks": " ".join(map(str, held["ranks"]["geometry"])),
         "appearance ranks": " ".join(map(str, held["ranks"]["appearance"])),
     }

@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from mua.arguments import amount
 from mua.cli.failure import run_command
 from mua.errors import InputError
 from mua.files.inputs import require_file
@@ -68,7 +69,7 @@ def _write(
     site = player_site(files, shown, poster=picture)
     write_folder(output, site)
     total = sum(path.stat().st_size for path in output.rglob("*") if path.is_file())
-    typer.echo(f"{output}: {len(site)} files, {total / 1e6:.1f} MB; copy it to any web host")
+    typer.echo(f"{output}: {amount(len(site), 'file')}, {total / 1e6:.1f} MB; copy it to any web host")
 
 
 def run() -> None:

@@ -12,6 +12,7 @@ from PIL import Image
 from rich.console import Console
 from rich.progress import track
 
+from mua.arguments import amount
 from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.asset.read import read
@@ -131,4 +132,4 @@ def _written(output: Path, take: _Take) -> str:
     if not is_video(output):
         return f"{output}: {size}"
     count = len(take.frames)
-    return f"{output}: {count} {'frame' if count == 1 else 'frames'} of {size}, {count / take.rate:.1f} s"
+    return f"{output}: {amount(count, 'frame')} of {size}, {count / take.rate:.1f} s"

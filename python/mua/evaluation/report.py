@@ -12,6 +12,7 @@ from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 
+from mua.arguments import amount
 from mua.evaluation.entries import MEAN
 from mua.evaluation.metrics import METRICS, Scores
 from mua.evaluation.scores import KINDS, Result
@@ -45,11 +46,11 @@ def legend(results: Sequence[Result], setting: Setting) -> list[str]:
     costs = [entry.cost for entry in entries]
     files = [cost for cost in costs if cost.storage]
     counted = " and ".join(f"{count} {kind}" for kind, count in setting.frames.items() if count)
-    budget = f"{setting.seconds:g} s" if setting.steps is None else f"{setting.steps} steps"
-    views = "1 view" if setting.views == 1 else f"{setting.views} views"
+    budget = f"{setting.seconds:g} s" if setting.steps is None else amount(setting.steps, "step")
     sentences = [
-        f"Means over {counted} frames of {setting.recording}, from {views} of {setting.size} x {setting.size} pixels, "
-        f"beside the teacher. The figure covers {setting.covered:.0%} of an image, the rest is black.",
+        f"Means over {counted} frames of {setting.recording}, from {amount(setting.views, 'view')} of "
+        f"{setting.size} x {setting.size} pixels, beside the teacher. "
+        f"The figure covers {setting.covered:.0%} of an image, the rest is black.",
         "Drawn on the teacher's mesh of the frame"
         + (", but for rows that say own mesh." if any(_meshed(result) for result in results) else "."),
     ]

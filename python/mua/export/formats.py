@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from mua.arguments import amount
 from mua.avatar.decode import Splats
 from mua.export.compressed_ply import compressed_ply_bytes
 from mua.export.frames import ExportFrames
@@ -92,10 +93,11 @@ def _write_stage(
 def held(kind: Kind, frames: ExportFrames) -> str:
     """What a file holds, in words."""
     rig = frames.avatar.rig
+    joints = amount(len(rig.skeleton.names), "joint")
     counts = {
-        SPLATS: f"{len(rig.texels.texels):,} splats",
+        SPLATS: amount(len(rig.texels.texels), "splat"),
         GEOMETRY: f"detailed geometry of {len(rig.texels.texels):,} vertices",
-        MESH: f"mesh of {len(rig.mesh.faces):,} triangles, {len(rig.skeleton.names)} joints",
+        MESH: f"mesh of {amount(len(rig.mesh.faces), 'triangle')}, {joints}",
     }
-    what = counts.get(kind.what, f"{len(rig.skeleton.names)} joints")
-    return f"{what}, {len(frames.numbers)} frames" if kind.clip else what
+    what = counts.get(kind.what, joints)
+    return f"{what}, {amount(len(frames.numbers), 'frame')}" if kind.clip else what

@@ -3,6 +3,7 @@
 from math import floor
 from typing import Any
 
+from mua.arguments import amount
 from mua.fidelity.compare import Fidelity, PoseFidelity, Shot
 from mua.fidelity.faces import LOST, LOST_OVERLAP, FaceFidelity
 from mua.fidelity.measure import Agreement
@@ -16,7 +17,7 @@ def summary(fidelity: Fidelity) -> str:
     """The figures in a sentence."""
     return (
         f"Splats compared with the source: silhouettes overlap by {100 * fidelity.iou:.1f} %, the colours inside have "
-        f"a PSNR of {fidelity.psnr:.1f} dB, in the worst of {len(fidelity.poses)} poses."
+        f"a PSNR of {fidelity.psnr:.1f} dB, in the worst of {amount(len(fidelity.poses), 'pose')}."
     )
 
 

@@ -11,6 +11,7 @@ from typing import Self
 
 import numpy as np
 
+from mua.arguments import amount
 from mua.errors import InputError
 from mua.live.vmc import Assembler, Counts, Frame
 
@@ -92,7 +93,7 @@ class Receiver:
     def figures(self) -> str:
         """What has come so far and how late it was shown, in one line."""
         counts = self.counts
-        parts = [f"{counts.packets:,} packets, {counts.frames:,} poses, {self.latency}"]
+        parts = [f"{amount(counts.packets, 'packet')}, {amount(counts.frames, 'pose')}, {self.latency}"]
         parts += [f"{counts.malformed:,} packets are no OSC and were dropped"] if counts.malformed else []
         parts += [f"{counts.ignored:,} values mean nothing and were ignored"] if counts.ignored else []
         return "; ".join(parts)

@@ -6,7 +6,7 @@ from typing import Self
 
 import numpy as np
 
-from mua.arguments import whole_number
+from mua.arguments import amount, whole_number
 from mua.arrays import Array
 from mua.errors import InputError
 from mua.pose.skeleton import Pose
@@ -44,7 +44,7 @@ class Clip:
 
     def __repr__(self) -> str:
         joints = self.rotations.shape[1] if self.rotations.ndim == 3 else "?"
-        return f"<mua.Clip {self.name!r}: {len(self)} frames at {self.rate:g} a second, {joints} joints>"
+        return f"<mua.Clip {self.name!r}: {amount(len(self), 'frame')} at {self.rate:g} a second, {joints} joints>"
 
     def pose(self, index: int) -> Pose:
         """The pose of a frame, counted from 0; raises InputError where there is none."""

@@ -11,7 +11,7 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from mua.arguments import PathLike, as_path
+from mua.arguments import PathLike, amount, as_path
 from mua.arrays import Array
 from mua.channels import CHANNELS
 from mua.errors import InputError
@@ -107,7 +107,7 @@ class Recording:
 
     def __repr__(self) -> str:
         frames = f"{self.count()} training and {self.count(held_out=True)} held-out frames"
-        return f"<mua.Recording {str(self.directory)!r}: {frames} of {len(self.clips)} clips>"
+        return f"<mua.Recording {str(self.directory)!r}: {frames} of {amount(len(self.clips), 'clip')}>"
 
     def __reduce__(self) -> tuple[type["Recording"], tuple[Path]]:
         return Recording, (self.directory,)  # another process maps its files

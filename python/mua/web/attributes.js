@@ -23,6 +23,9 @@ export const FOLLOWED = [
   "elevation",
 ];
 
+/** What is shown where nothing is asked for. */
+export const FIRST = { splats: true, geometry: false, template: false, skeleton: false, shadow: true };
+
 /** @type {Record<string, (player: Player, value: string | null) => void>} by the attribute's name */
 const ASKED = {
   clip(player, value) {

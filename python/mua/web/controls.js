@@ -1,7 +1,7 @@
 // The bar, the panel and the sentences of an element: what they ask of it, and what they show of it.
 
 import { levelNamed } from "./attributes.js";
-import { ICONS, MARKUP } from "./markup.js";
+import { ICONS, parts } from "./markup.js";
 
 const EVERY = 500; // milliseconds between two looks at the times
 
@@ -12,7 +12,7 @@ const EVERY = 500; // milliseconds between two looks at the times
 export class Controls {
   /** @param {ShadowRoot} root @param {MuaAvatar} avatar */
   constructor(root, avatar) {
-    root.innerHTML = MARKUP;
+    root.append(parts());
     this.avatar = avatar;
     const find = (/** @type {string} */ name) => /** @type {HTMLElement} */ (root.querySelector(name));
     this.frame = find(".frame");
@@ -21,6 +21,7 @@ export class Controls {
     this.bar = find(".bar");
     this.panel = find(".panel");
     this.play = find(".play");
+    this.icon = find(".play path");
     this.scrub = /** @type {HTMLInputElement} */ (find(".scrub"));
     this.clock = find(".clock");
     this.clips = /** @type {HTMLSelectElement} */ (find(".clips"));
@@ -134,7 +135,7 @@ export class Controls {
     this.bar.hidden = !avatar.controls || !player;
     for (const part of /** @type {HTMLInputElement[]} */ ([this.play, this.scrub, this.clips, this.speed]))
       part.disabled = !here || !player?.clips.length;
-    this.whole.hidden = !document.fullscreenEnabled;
+    this.whole.hidden = !avatar.ownerDocument.fullscreenEnabled;
     this.whole.setAttribute("aria-pressed", String(avatar.matches(":fullscreen")));
     this.vr.hidden = !avatar.offersVR;
     this.vr.disabled = !here;
@@ -143,7 +144,7 @@ export class Controls {
     const names = avatar.avatars.map(({ name }) => name).join(", ");
     this.canvas.setAttribute("aria-label", avatar.alt || avatar.ariaLabel || names || "No avatar");
     if (!player) return;
-    this.play.innerHTML = player.playing ? ICONS.pause : ICONS.play;
+    this.icon.setAttribute("d", player.playing ? ICONS.pause : ICONS.play);
     this.play.setAttribute("aria-label", player.playing ? "Pause" : "Play");
     this.speed.value = String(player.speed);
     for (const box of this.toggles) box.checked = player.show[/** @type {Shown} */ (box.name)];

@@ -23,17 +23,18 @@
 // Events: `progress` with `detail.totalProgress` of 0 to 1, `load` when an avatar is shown, `error` with the error in `detail`,
 // `picture` when the first one is drawn; `play`, `pause`, `loop` and `end` with clip and time in `detail`.
 
+import { Operated } from "./actions.js";
 import { Asked } from "./asked.js";
-import { ASKABLE, adopt, FOLLOWED, levelNamed, missingClip, namesOf, numberOf } from "./attributes.js";
+import { ASKABLE, adopt, FIRST, FOLLOWED, missingClip } from "./attributes.js";
 import { Controls } from "./controls.js";
+import { windowOf } from "./display.js";
 import { acceptFiles } from "./drop.js";
 import { listen } from "./hands.js";
 import { pressed } from "./keys.js";
 import { Loading } from "./loading.js";
 import { look } from "./look.js";
 import { Loop, lessMotion } from "./loop.js";
-import { AvatarError, offersVR } from "./player.js";
-import { Attributed } from "./properties.js";
+import { offersVR } from "./player.js";
 import { Stage } from "./stage.js";
 
 /** @typedef {import("./player.js").AvatarHandle} AvatarHandle */
@@ -41,9 +42,8 @@ import { Stage } from "./stage.js";
 /** @typedef {import("./loading.js").Source} Source */
 
 const SHARPEST = 2; // device pixels of a CSS pixel that are drawn: more cost much and show little
-const FIRST = { splats: true, geometry: false, template: false, skeleton: false, shadow: true }; // what is shown where nothing is asked for
 
-export class MuaAvatar extends Attributed {
+export class MuaAvatar extends Operated {
   static observedAttributes = FOLLOWED;
 
   /** Milliseconds from the start of the page to the first picture; 0 before. */
@@ -51,13 +51,8 @@ export class MuaAvatar extends Attributed {
   /** Whether there is a headset that could show the avatars. */
   offersVR = false;
 
-  #watched = new ResizeObserver(() => {
-    this.#controls.update();
-    this.#fit();
-  });
-  #seen = new IntersectionObserver(([entry]) => {
-    this.#loop.setVisible(entry.isIntersecting);
-  });
+  /** @type {{disconnect: () => void}[]} */
+  #observers = [];
   #controls;
   #loading;
   #asked = new Asked();
@@ -89,26 +84,37 @@ export class MuaAvatar extends Attributed {
 
   connectedCallback() {
     this.upgrade();
-    for (const part of [this.#controls.canvas, this.#controls.bar]) this.#watched.observe(part);
-    this.#seen.observe(this);
+    this.#observe(windowOf(this));
     if (!this.#loading.begun) void this.reload();
     void this.#findHeadset();
   }
 
   disconnectedCallback() {
-    this.#watched.disconnect();
-    this.#seen.disconnect();
-    queueMicrotask(() => {
+    for (const observer of this.#observers) observer.disconnect();
+    setTimeout(() => {
       if (this.isConnected) return; // an element that is moved stays as it is
       this.#asked.drop();
       this.#loading.dispose();
     });
   }
 
+  /** Follow its size, and whether it is on the screen, by a window's own observers: those of a page in the background rest. */
+  #observe(/** @type {Window & typeof globalThis} */ view) {
+    const sized = new view.ResizeObserver(() => {
+      this.#controls.update();
+      this.#fit();
+    });
+    for (const part of [this.#controls.canvas, this.#controls.bar]) sized.observe(part);
+    const seen = new view.IntersectionObserver(([entry]) => this.#loop.setVisible(entry.isIntersecting));
+    seen.observe(this);
+    this.#observers = [sized, seen];
+  }
+
   /** In the document of a frame or of another window, such as a picture in picture. */
   adoptedCallback() {
     const { shadowRoot, ownerDocument } = this;
     if (shadowRoot && ownerDocument.defaultView) shadowRoot.adoptedStyleSheets = [look(ownerDocument)]; // no template's
+    this.#loop.move();
   }
 
   attributeChangedCallback(
@@ -135,63 +141,9 @@ export class MuaAvatar extends Attributed {
     return this.#loading?.player ?? null;
   }
 
-  /** The avatars that are shown. */
-  get avatars() {
-    return this.player?.avatars ?? [];
-  }
-
-  /** Name of the clip that plays. @type {string | null} */
-  get clip() {
-    return this.player?.clip ?? this.getAttribute("clip");
-  }
-
-  set clip(name) {
-    this.reflect("clip", name);
-    if (this.player && this.player.clip === name) this.player.time = 0;
-    this.#redraw();
-  }
-
-  /** Playback speed; 1 plays at the recorded speed. @type {number} */
-  get speed() {
-    return this.player?.speed ?? numberOf(this, "speed", 1);
-  }
-
-  set speed(speed) {
-    this.reflect("speed", speed);
-  }
-
-  /** What is drawn, separated by commas: splats, geometry, template, skeleton, shadow. @type {string} */
-  get show() {
-    return this.player ? namesOf(this.player.show) : (this.getAttribute("show") ?? namesOf(FIRST));
-  }
-
-  set show(names) {
-    this.reflect("show", names);
-  }
-
   /** Share of the pose of the first avatar, as last drawn, that training did not show, 0 to 1. */
   get outsideTraining() {
     return this.avatars[0]?.outsideTraining ?? 0;
-  }
-
-  /** The level of detail that is asked for. @returns {import("./player.js").Level} */
-  get level() {
-    return this.player?.level ?? levelNamed(this.getAttribute("level"));
-  }
-
-  set level(level) {
-    this.reflect("level", level);
-  }
-
-  /** All that may be asked for: by the distance, the finest, and the sizes of the first avatar, texels along a side. */
-  get levels() {
-    return /** @type {import("./player.js").Level[]} */ (["auto", "full", ...(this.avatars[0]?.levels.slice(1) ?? [])]);
-  }
-
-  /** The next coarser level of detail; after the coarsest, by the distance again. */
-  nextLevel() {
-    const at = this.levels.indexOf(this.level);
-    this.level = this.levels[(at + 1) % this.levels.length];
   }
 
   /** The skeleton of the first avatar; null before it is there. */
@@ -226,16 +178,6 @@ export class MuaAvatar extends Attributed {
     }
   }
 
-  /** Draw two eyes side by side, or one. */
-  toggleStereo() {
-    this.toggleAttribute("stereo");
-  }
-
-  /** Let the camera go with the figure, or stay. */
-  toggleFollow() {
-    this.toggleAttribute("follow");
-  }
-
   /** Load what src names, anew. */
   async reload() {
     await this.#loading.reload();
@@ -265,36 +207,12 @@ export class MuaAvatar extends Attributed {
     this.#setPlaying(false);
   }
 
-  togglePlaying() {
-    this.#setPlaying(!this.player?.playing);
-  }
-
   /** Pause and go to a time in the clip, seconds. */
   seek(/** @type {number} */ seconds) {
     this.pause();
     if (this.player && this.avatars.length) this.player.time = seconds;
     else this.#asked.time = seconds;
     this.#redraw();
-  }
-
-  /** Pause and go so many frames on, round and round. */
-  step(/** @type {number} */ frames) {
-    const clip = this.player?.clips.find(({ name }) => name === this.player?.clip);
-    if (!this.player || !clip) return;
-    const rate = clip.frames / clip.seconds;
-    const index = (Math.floor(this.player.time * rate + 1e-6) + frames + clip.frames) % clip.frames;
-    this.seek(index / rate);
-  }
-
-  nextClip() {
-    const names = this.player?.clips.map(({ name }) => name) ?? [];
-    if (names.length) this.clip = names[(names.indexOf(this.clip ?? "") + 1) % names.length];
-  }
-
-  /** Show or hide a part of the picture. */
-  toggle(/** @type {import("./keys.js").Shown} */ name) {
-    const shown = this.show.split(",").filter(Boolean);
-    this.show = (shown.includes(name) ? shown.filter((each) => each !== name) : [...shown, name]).join();
   }
 
   /** Open the panel at the times of each stage, or close them. */
@@ -325,12 +243,6 @@ export class MuaAvatar extends Attributed {
     this.#redraw();
   }
 
-  /** The present picture as a PNG. */
-  async screenshot() {
-    if (!this.player) throw new AvatarError("No avatar is loaded, so there is no picture to save.");
-    return this.player.screenshot();
-  }
-
   /** Download the present picture. */
   async savePicture() {
     try {
@@ -341,12 +253,6 @@ export class MuaAvatar extends Attributed {
     } catch (error) {
       this.#loading.fail(error);
     }
-  }
-
-  async toggleFullscreen() {
-    if (!document.fullscreenEnabled) return;
-    if (this.matches(":fullscreen")) await document.exitFullscreen();
-    else await this.requestFullscreen();
   }
 
   /** Show the avatars in a headset, or on the page again; only while the browser handles a click or a key. */
@@ -458,7 +364,7 @@ export class MuaAvatar extends Attributed {
   /** Give the canvas the pixels that it has on the screen. */
   #fit() {
     const { canvas } = this.#controls;
-    const sharp = Math.min(devicePixelRatio, SHARPEST);
+    const sharp = Math.min(windowOf(this).devicePixelRatio, SHARPEST);
     const [width, height] = [canvas.clientWidth, canvas.clientHeight].map((side) =>
       Math.max(Math.round(side * sharp), 1),
     );

@@ -2,6 +2,7 @@
 
 import { Avatars } from "./avatars.js";
 import { camerasOf, FOV, framing } from "./camera.js";
+import { nextFrame, windowOf } from "./display.js";
 import { AvatarError, asAvatarError } from "./error.js";
 import { described, handleOf } from "./handle.js";
 import { load } from "./load.js";
@@ -54,6 +55,7 @@ export class Engine extends Avatars {
     /** @type {((error: AvatarError) => void) | null} */
     this.onerror = null;
     this.request = 0; // of the next picture; 0 where the loop stands
+    this.window = windowOf(canvas); // whose frames are drawn
     this.drawn = ""; // what the canvas shows
     /** @type {Promise<void> | null} */
     this.early = null; // a picture that is being drawn while kernels are still being compiled, or what is fetched for it
@@ -305,17 +307,23 @@ export class Engine extends Avatars {
     if (this.request || this.disposed) return;
     this.playback.begin(performance.now());
     this.drawn = "";
-    this.request = requestAnimationFrame((now) => this.step(now));
+    this.await();
+  }
+
+  /** Ask for the next frame of the window that the canvas is in. */
+  await() {
+    this.window = windowOf(this.canvas);
+    this.request = nextFrame(this.window, (now) => this.step(now));
   }
 
   stop() {
-    cancelAnimationFrame(this.request);
+    this.window.cancelAnimationFrame(this.request);
     this.request = 0;
   }
 
   /** One turn of the loop, which draws where anything changed. */
   step(/** @type {number} */ now) {
-    this.request = requestAnimationFrame((next) => this.step(next));
+    this.await();
     if (this.vr) return;
     this.playback.advance(now);
     this.takePoses(now);

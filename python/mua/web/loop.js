@@ -1,5 +1,7 @@
 // When pictures are drawn: all that the display shows while an avatar plays and can be seen, else only what changes.
 
+import { nextFrame, windowOf } from "./display.js";
+
 const LONGEST_STEP = 0.25; // seconds that count for one picture, so that nothing leaps after a pause
 
 /** @typedef {import("./element.js").MuaAvatar} MuaAvatar */
@@ -12,10 +14,12 @@ export function lessMotion() {
 
 export class Loop {
   #drawing = false;
+  #waiting = false; // for a frame, to draw what has changed
   #changed = false;
   #visible = true;
   #ticking = false;
   #before = 0; // milliseconds of the last tick
+  #windows = 1; // that it has been in
 
   /** @param {MuaAvatar} avatar @param {Asks} asks */
   constructor(avatar, asks) {
@@ -27,6 +31,17 @@ export class Loop {
   setVisible(/** @type {boolean} */ visible) {
     this.#visible = visible;
     this.pace();
+  }
+
+  /** Go on by the frames of another window: those that the one before owes may never come. */
+  move() {
+    this.#windows += 1;
+    this.#ticking = false;
+    this.avatar.player?.stop();
+    this.pace();
+    if (!this.#waiting) return;
+    this.#drawing = this.#waiting = false;
+    this.redraw();
   }
 
   get #going() {
@@ -41,7 +56,12 @@ export class Loop {
     if (this.#ticking) return;
     this.#ticking = true;
     this.#before = performance.now();
-    requestAnimationFrame((now) => this.#tick(now));
+    this.#next((now) => this.#tick(now));
+  }
+
+  #next(/** @type {(now: number) => void} */ draw) {
+    const windows = this.#windows;
+    nextFrame(windowOf(this.avatar), (now) => windows === this.#windows && draw(now));
   }
 
   #tick(/** @type {number} */ now) {
@@ -50,15 +70,15 @@ export class Loop {
     const seconds = Math.max(now - this.#before, 0) / 1000;
     this.#before = now;
     this.asks.tick(Math.min(seconds, LONGEST_STEP));
-    requestAnimationFrame((then) => this.#tick(then));
+    this.#next((then) => this.#tick(then));
   }
 
   /** Draw what has changed, once however often it is asked for. */
   redraw() {
     this.#changed = true;
     if (this.#drawing || !this.avatar.player || this.avatar.player.moving) return;
-    this.#drawing = true;
-    requestAnimationFrame(() => void this.#drawChanged());
+    this.#drawing = this.#waiting = true;
+    this.#next(() => void this.#drawChanged());
   }
 
   /** Draw now, and with it what was to be drawn. */
@@ -70,6 +90,7 @@ export class Loop {
 
   async #drawChanged() {
     const { player } = this.avatar;
+    this.#waiting = false;
     try {
       while (this.#changed && this.avatar.player && !this.avatar.player.moving) await this.draw();
     } catch (error) {

@@ -1,6 +1,6 @@
 // The attributes of an element as properties, so that pages and frameworks may set either: before, while and after an avatar loads.
 
-import { numberOf } from "./attributes.js";
+import { FIRST, levelNamed, namesOf, numberOf } from "./attributes.js";
 
 /** Names of the properties, each that of its attribute. */
 export const PROPERTIES = /** @type {const} */ ([
@@ -11,6 +11,16 @@ export const PROPERTIES = /** @type {const} */ ([
 const HTMLElementOrNone = /** @type {typeof HTMLElement} */ (globalThis.HTMLElement ?? class {});
 
 export class Attributed extends HTMLElementOrNone {
+  /** What draws; null until an avatar is asked for. @returns {import("./player.js").Player | null} */
+  get player() {
+    return null;
+  }
+
+  /** The avatars that are shown. */
+  get avatars() {
+    return this.player?.avatars ?? [];
+  }
+
   /** Addresses of avatar files, separated by spaces. @type {string} */
   get src() {
     return this.getAttribute("src") ?? "";
@@ -72,6 +82,50 @@ export class Attributed extends HTMLElementOrNone {
 
   set follow(value) {
     this.reflect("follow", value);
+  }
+
+  /** Name of the clip that plays. @type {string | null} */
+  get clip() {
+    return this.player?.clip ?? this.getAttribute("clip");
+  }
+
+  set clip(name) {
+    this.reflect("clip", name);
+    if (!this.player || this.player.clip !== name) return;
+    this.player.time = 0;
+    this.player.onchange?.();
+  }
+
+  /** Playback speed; 1 plays at the recorded speed. @type {number} */
+  get speed() {
+    return this.player?.speed ?? numberOf(this, "speed", 1);
+  }
+
+  set speed(speed) {
+    this.reflect("speed", speed);
+  }
+
+  /** What is drawn, separated by commas: splats, geometry, template, skeleton, shadow. @type {string} */
+  get show() {
+    return this.player ? namesOf(this.player.show) : (this.getAttribute("show") ?? namesOf(FIRST));
+  }
+
+  set show(names) {
+    this.reflect("show", names);
+  }
+
+  /** The level of detail that is asked for. @returns {import("./player.js").Level} */
+  get level() {
+    return this.player?.level ?? levelNamed(this.getAttribute("level"));
+  }
+
+  set level(level) {
+    this.reflect("level", level);
+  }
+
+  /** All that may be asked for: by the distance, the finest, and the sizes of the first avatar, texels along a side. */
+  get levels() {
+    return /** @type {import("./player.js").Level[]} */ (["auto", "full", ...(this.avatars[0]?.levels.slice(1) ?? [])]);
   }
 
   /** Most splats of all avatars together; null: no limit. @type {number | null} */

@@ -18,6 +18,10 @@ class Part extends EventTarget {
   });
   #attributes = new Map();
 
+  get ownerDocument() {
+    return document;
+  }
+
   get parentElement() {
     this.parent ??= new Part();
     return this.parent;
@@ -51,15 +55,11 @@ class Part extends EventTarget {
   }
 
   attachShadow() {
-    const [parts, named] = [new Map(), new Map()];
-    const known = (held, name) => held.get(name) ?? held.set(name, new Part()).get(name);
-    this.shadow = {
-      querySelector: (name) => known(parts, name),
-      querySelectorAll: () =>
-        [...this.shadow.innerHTML.matchAll(/type="checkbox" name="(\w+)"/g)].map(([, name]) =>
-          Object.assign(known(named, name), { name }),
-        ),
-    };
+    const parts = new Map();
+    this.shadow = Object.assign(new Part(), {
+      querySelector: (name) => parts.get(name) ?? parts.set(name, new Part()).get(name),
+      querySelectorAll: () => named(this.shadow).filter((part) => part.getAttribute("type") === "checkbox"),
+    });
     return this.shadow;
   }
 
@@ -82,6 +82,13 @@ class Part extends EventTarget {
   focus() {
     document.activeElement = this;
   }
+}
+
+/** The parts within one that have names. */
+function named(part) {
+  const inner = (part.children ?? []).flatMap(named);
+  const name = part.getAttribute?.("name");
+  return name ? [Object.assign(part, { name }), ...inner] : inner;
 }
 
 const made = new Map(); // elements by name
@@ -112,7 +119,12 @@ Object.assign(globalThis, {
   matchMedia: () => ({ matches: page.lessMotion }),
   requestAnimationFrame: (draws) => (frames.set(++requests, draws), requests),
   cancelAnimationFrame: (request) => frames.delete(request),
-  document: { baseURI: "http://host/page.html", fullscreenEnabled: false, createElement: () => page.make() },
+  document: {
+    baseURI: "http://host/page.html",
+    fullscreenEnabled: false,
+    createElement: () => page.make(),
+    createElementNS: () => page.make(),
+  },
 });
 Object.defineProperty(globalThis, "navigator", { value: { gpu: {} }, configurable: true });
 

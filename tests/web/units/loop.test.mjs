@@ -82,3 +82,25 @@ test("a picture that fails is reported; one of a player that was given back mean
     assert.deepEqual(reported.failed, wanted);
   }
 });
+
+test("in another window it plays and draws by the frames of that one, also what the first one owes", async () => {
+  for (const playing of [true, false]) {
+    frames = [];
+    const { loop, avatar, player, reported } = begun({ playing });
+    loop.pace();
+    loop.redraw();
+    const owed = frames.splice(0);
+    const view = {
+      requestAnimationFrame: (draws) => frames.push(draws),
+      performance: { timeOrigin: performance.timeOrigin + 5000 },
+    };
+    avatar.ownerDocument = { defaultView: view };
+    loop.move();
+    assert.deepEqual([owed.length, frames.length, player.going], [1, 1, playing]);
+    await show(performance.now() - 5000 + 100); // by that window's clock
+    for (const draws of owed) draws(performance.now()); // of a page that comes back
+    await settled();
+    if (playing) assert.ok(reported.ticks.length === 1 && reported.ticks[0] >= 0.1, String(reported.ticks));
+    assert.equal(reported.drawn, playing ? 0 : 1);
+  }
+});

@@ -218,6 +218,19 @@ test("a device that is lost ends the headset's session", async () => {
   assert.equal(left, 1);
 });
 
+test("an engine draws by the frames of the window that its canvas is in, at times of the page's clock", async () => {
+  const engine = await begun(avatar);
+  engine.start();
+  const other = { asked: [], performance: { timeOrigin: performance.timeOrigin + 60_000 } };
+  Object.assign(other, { requestAnimationFrame: (draws) => other.asked.push(draws), cancelAnimationFrame() {} });
+  engine.canvas.ownerDocument = { defaultView: other };
+  engine.playback.begin(0);
+  for (const draws of asked.splice(0)) draws(FRAME);
+  for (const draws of other.asked.splice(0)) draws(2 * FRAME - 60_000);
+  assert.ok(Math.abs(engine.time - (2 * FRAME) / 1000) < 1e-6, String(engine.time));
+  assert.deepEqual([asked.length, other.asked.length], [0, 1]);
+});
+
 test("a picture that cannot be drawn stops the loop and is reported", async () => {
   const engine = await begun(avatar);
   const reported = [];
