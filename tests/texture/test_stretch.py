@@ -11,7 +11,7 @@ from mua import rotation
 from mua.rig.character import Mesh
 from mua.rig.texel_map import build_texel_map
 from mua.texture.footprints import TexelPoints
-from mua.texture.stretch import HOLD, LONGEST, SurfelStretch
+from mua.texture.stretch import HOLD, LEAN, LONGEST, SurfelStretch
 from mua.texture.surfels import SurfaceFrames, rest_surfels
 
 SIZE = 61
@@ -87,8 +87,8 @@ def test_no_surfel_spans_a_gap_that_opens_far_beyond_its_size() -> None:
     assert along.max() == pytest.approx(np.log(LONGEST))
 
 
-def test_a_surfel_that_leans_out_of_its_stretched_triangle_stands_off_no_farther_than_it_reached() -> None:
-    corners, deviation, lean = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), 0.01, 0.5  # radians about y
+def test_a_surfel_that_leans_out_of_its_stretched_triangle_stands_off_by_part_of_its_rest_length() -> None:
+    corners, deviation, lean = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), 0.01, 0.25  # radians about y
     stretch = SurfelStretch(
         corners,
         np.array([[0, 1, 2]]),
@@ -102,7 +102,7 @@ def test_a_surfel_that_leans_out_of_its_stretched_triangle_stands_off_no_farther
         stretch(moved, longer, rotation.from_axis_angle(np.eye(3)[[1, 1, 1]], angle)) for angle in (0, lean)
     )
     assert np.exp(flat[0]) == pytest.approx(4)
-    assert np.exp(leaning[0]) * np.sin(lean) == pytest.approx(1)
+    assert np.exp(leaning[0]) * np.sin(lean) == pytest.approx(LEAN)
     assert leaning[1] == flat[1]
 
 

@@ -8,7 +8,7 @@ from mua.arrays import Array
 HOLD = float(np.log(1.3))  # how far a stretch that is smooth over the vertices may differ from that of the own triangle
 WIDTH = 2.0  # deviations, about the way from one surfel to the next: what of a surfel is to lie on its triangle
 SHORTEST = 0.05  # of its length at rest: a surfel on a triangle that is squeezed to nothing
-LEAN = 1.0  # how far a stretched surfel's end may leave the plane of its triangle, over how far it reaches at rest
+LEAN = 0.5  # how far a stretched surfel's end may leave the plane of its triangle, over how far it reaches at rest
 LONGEST = 5.0  # times its length at rest: on an armpit that opens tenfold, a flat surfel would stand out of the body
 
 
