@@ -11,7 +11,7 @@ from mua import rotation
 from mua.rig.character import Mesh
 from mua.rig.texel_map import build_texel_map
 from mua.texture.footprints import TexelPoints
-from mua.texture.stretch import HOLD, LONGEST, SurfelStretch
+from mua.texture.stretch import HOLD, LEAN, LONGEST, SurfelStretch
 from mua.texture.surfels import SurfaceFrames, rest_surfels
 
 SIZE = 61
@@ -22,16 +22,17 @@ def stretched(mesh: Mesh, moved: np.ndarray) -> tuple[np.ndarray, np.ndarray, np
     texels = build_texel_map(mesh, SIZE)
     at: dict[str, Any] = {"texels": texels.texels, "triangles": texels.triangles, "barycentrics": texels.barycentrics}
     found = rest_surfels(mesh, size=SIZE, **at)
-    _, strain = SurfaceFrames(mesh.vertices, mesh.faces)(moved)
+    turn, strain = SurfaceFrames(mesh.vertices, mesh.faces)(moved)
     at_texels = np.einsum("nk,nkc->cn", texels.barycentrics, strain[mesh.faces[texels.triangles]])
     stretch = SurfelStretch(
         mesh.vertices,
         mesh.faces,
         triangles=texels.triangles,
+        barycentrics=texels.barycentrics,
         rotations=found.rotations,
         deviations=np.exp(found.log_scales[:, :2]),
     )
-    grown = stretch(moved, at_texels)
+    grown = stretch(moved, at_texels, turn)
     scales = np.exp(found.log_scales + np.concatenate([grown, np.zeros((1, len(texels.texels)))]).T)
     return grown, TexelPoints(Mesh(moved, mesh.faces, mesh.uv, mesh.uv_faces), SIZE, **at).places, scales
 
@@ -68,11 +69,12 @@ def test_a_surfel_wider_than_the_sliver_it_lies_on_grows_by_what_the_sliver_open
         corners,
         np.array([[0, 1, 2]]),
         triangles=np.array([0]),
+        barycentrics=np.full((1, 3), 1 / 3),
         rotations=np.array([[1.0, 0, 0, 0]]),
         deviations=np.full((1, 2), deviation),
     )
     moved = corners + np.array([[0, 0, 0], [0, 0, 0], [0, opened, 0]])
-    (along,), (across,) = stretch(moved, np.zeros((6, 1)))
+    (along,), (across,) = stretch(moved, np.zeros((6, 1)), np.eye(4)[[0, 0, 0]])
     assert abs(along) <= HOLD
     assert 0 <= deviation * np.expm1(across) <= opened
 
@@ -83,6 +85,25 @@ def test_no_surfel_spans_a_gap_that_opens_far_beyond_its_size() -> None:
     moved = mesh.vertices + (mesh.vertices[:, 1:2] > HEIGHT * 3.5 / 7) * [0, 20 * HEIGHT / 7, 0]
     (_, along), _, _ = stretched(mesh, moved)
     assert along.max() == pytest.approx(np.log(LONGEST))
+
+
+def test_a_surfel_that_leans_out_of_its_stretched_triangle_stands_off_by_part_of_its_rest_length() -> None:
+    corners, deviation, lean = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), 0.01, 0.25  # radians about y
+    stretch = SurfelStretch(
+        corners,
+        np.array([[0, 1, 2]]),
+        triangles=np.array([0]),
+        barycentrics=np.full((1, 3), 1 / 3),
+        rotations=np.array([[1.0, 0, 0, 0]]),
+        deviations=np.full((1, 2), deviation),
+    )
+    moved, longer = corners * [4, 1, 1], np.array([[15.0], [0], [0], [0], [0], [0]])
+    flat, leaning = (
+        stretch(moved, longer, rotation.from_axis_angle(np.eye(3)[[1, 1, 1]], angle)) for angle in (0, lean)
+    )
+    assert np.exp(flat[0]) == pytest.approx(4)
+    assert np.exp(leaning[0]) * np.sin(lean) == pytest.approx(LEAN)
+    assert leaning[1] == flat[1]
 
 
 def test_a_surface_squeezed_to_nothing_keeps_finite_surfels() -> None:

@@ -80,7 +80,9 @@ class StillTeacher:
             turn = _upside(rotation.multiply(turn, face_turn))
             strain = self._surface(moved)[1]
         light = self._light(joints, dual, moved, turn)
-        texture = self.laid.texture(canonical - bind, coarse, turn=turn, moved=moved, strain=strain, light=light)
+        texture = self.laid.texture(
+            canonical - bind, coarse, turn=turn, moved=moved, dual=dual, strain=strain, light=light
+        )
         if face is not None:
             texture[:, :3] += self.laid.leaning(face_turn)
         mesh = (self.rig.mesh.vertices + coarse).astype(np.float32)

@@ -71,7 +71,12 @@ class SurfaceTexels:
             for rows in (relief, surfels.smooth, surfels.log_scales, albedo[:, :3])
         )
         self._stretch = SurfelStretch(
-            mesh.vertices, mesh.faces, triangles=triangles, rotations=surfels.smooth, deviations=deviations
+            mesh.vertices,
+            mesh.faces,
+            triangles=triangles,
+            barycentrics=barycentrics,
+            rotations=surfels.smooth,
+            deviations=deviations,
         )
         self._turned_to_lines = np.ascontiguousarray((surfels.rotations - surfels.smooth).T, dtype=np.float32)
         alpha = np.clip(surfel_opacities(albedo[:, 3]), 1e-6, 1 - 1e-6)
@@ -95,6 +100,7 @@ class SurfaceTexels:
         *,
         turn: Array,  # [V, 4] of the surface about its vertices beside R_tex, canonical space; unit, w >= 0
         moved: Array,  # [V, 3] the dense surface in the world, metres
+        dual: Array,  # [V, 8] bind pose to world; the real part is R_tex
         strain: Array,  # [V, 6] of the surface about its vertices
         light: Light,  # its sheen in canonical space
     ) -> Array:
@@ -104,7 +110,7 @@ class SurfaceTexels:
         planes[3:7] = _turned(self._at_texels(turn), self._rest)
         planes[3:7] += self._turned_to_lines  # the same in all poses, so that what moves stays smooth
         planes[7:10] = self._log_scales
-        planes[7:9] += self._stretch(moved, self._at_texels(strain))
+        planes[7:9] += self._stretch(moved, self._at_texels(strain), rotation.multiply(dual[:, :4], turn))
         planes[10] = self._opacity
         planes[11:14] = (self._albedo * self._at_texels(light.gain) - 0.5) / np.float32(SH_C0)
         slope = self._at_texels(light.sheen / SH_C1)
