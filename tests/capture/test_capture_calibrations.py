@@ -8,134 +8,32 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from captures import MIDDLE, looking, make_capture
+from calibration_files import (
+    LENS,
+    MATRICES,
+    NAMES,
+    ROUNDING,
+    SIZE,
+    K,
+    actorshq,
+    colmap,
+    colmap_binary,
+    easymocap,
+    toml,
+    transforms,
+    vector,
+    write,
+)
+from captures import MIDDLE, make_capture
 from commands import Commands
 from PIL import Image
-from scipy.spatial.transform import Rotation
 
-from mua.arrays import Array
 from mua.capture import Capture, open_capture
 from mua.capture.conventions import read_axes
 from mua.capture.readers.calibrations import read_cameras
 from mua.capture.silhouette import pixels
 from mua.errors import InputError
 from mua.player.video import write_video
-
-SIZE = (40, 24)
-PLACES = ([2.0, 1.5, 3.0], [-2.5, 0.5, 2.0])
-K = np.array([[61.0, 0, 19.2], [0, 60.0, 11.1], [0, 0, 1]])
-LENS = [0.01, -0.02, 1e-3, 2e-3]
-NAMES = ("cam_01", "cam_02")
-ROUNDING = 1e-9
-MATRICES = [looking(np.array(place), MIDDLE) for place in PLACES]
-
-
-def vector(matrix: Array) -> Array:
-    return Rotation.from_matrix(matrix[:3, :3]).as_rotvec()
-
-
-def toml(*, head: str = "{name}", vectors: bool = True, **changed: str) -> str:
-    text = ""
-    for name, matrix in zip(NAMES, MATRICES, strict=True):
-        values = {
-            "size": str([float(side) for side in SIZE]),
-            "matrix": str(K.tolist()),
-            "distortions": str(LENS),
-            "rotation": str((vector(matrix) if vectors else matrix[:3, :3]).tolist()),
-            "translation": str(matrix[:3, 3].tolist()),
-            "fisheye": "false",
-        } | changed
-        text += f"[{head.format(name=name)}]\n" + "".join(f"{key} = {value}\n" for key, value in values.items())
-    return text + "[metadata]\nerror = 0.1\n"
-
-
-def easymocap(folder: Path, *, sized: bool = True, matrices: bool = True) -> None:
-    def stored(key: str, values: Array) -> str:
-        rows, columns = values.shape
-        data = ", ".join(map(repr, values.ravel().tolist()))
-        return f"{key}: !!opencv-matrix\n  rows: {rows}\n  cols: {columns}\n  dt: d\n  data: [{data}]\n"
-
-    intri = extri = '%YAML:1.0\n---\nnames:\n  - "cam_01"\n  - "cam_02"\n'
-    for name, matrix in zip(NAMES, MATRICES, strict=True):
-        intri += stored(f"K_{name}", K) + stored(f"dist_{name}", np.array([[*LENS, 0.0]]))
-        intri += f"H_{name}: {SIZE[1]}\nW_{name}: {SIZE[0]}\n" if sized else ""
-        extri += stored(f"R_{name}", vector(matrix)[:, None])
-        extri += stored(f"Rot_{name}", matrix[:3, :3]) if matrices else ""
-        extri += stored(f"T_{name}", matrix[:3, 3:])
-    intri += stored("K_uncalibrated", K)  # of a camera that was not placed
-    (folder / "intri.yml").write_text(intri)
-    (folder / "extri.yml").write_text(extri)
-
-
-def quaternion(matrix: Array) -> list[float]:
-    return Rotation.from_matrix(matrix[:3, :3]).as_quat(scalar_first=True).tolist()
-
-
-def colmap(folder: Path, *, model: str = "OPENCV") -> None:
-    """Its first pixel's corner is at 0."""
-    values = [61.0, 60.0, 19.7, 11.6, *LENS]
-    (folder / "cameras.txt").write_text(f"# Cameras\n7 {model} 40 24 {' '.join(map(str, values))}\n")
-    rows = [
-        " ".join(map(str, [number, *2 * np.array(quaternion(matrix)), *matrix[:3, 3], 7, f"{name}/000000.jpg"]))
-        for number, (name, matrix) in enumerate(zip(NAMES, MATRICES, strict=True))
-    ]
-    (folder / "images.txt").write_text("# Images\n" + "".join(f"{row}\n1.0 2.0 -1 \n" for row in rows))
-
-
-def colmap_binary(folder: Path) -> None:
-    values = [61.0, 60.0, 19.7, 11.6, *LENS]
-    (folder / "cameras.bin").write_bytes(struct.pack("<QiiQQ8d", 1, 7, 4, 40, 24, *values))
-    content = struct.pack("<Q", len(NAMES))
-    for number, (name, matrix) in enumerate(zip(NAMES, MATRICES, strict=True)):
-        content += struct.pack("<i7di", number, *quaternion(matrix), *matrix[:3, 3], 7) + f"{name}.png\0".encode()
-        points = 2 - number
-        content += struct.pack("<Q", points) + points * struct.pack("<ddq", 1, 2, -1)
-    (folder / "images.bin").write_bytes(content)
-
-
-def actorshq() -> str:
-    """Shares of the image's sides; camera to world."""
-    rows = ["name,w,h,rx,ry,rz,tx,ty,tz,fx,fy,px,py"]
-    for name, matrix in zip(NAMES, MATRICES, strict=True):
-        places = np.linalg.inv(matrix)
-        shares = [61.0 / SIZE[0], 60.0 / SIZE[1], 19.7 / SIZE[0], 11.6 / SIZE[1]]
-        rows.append(",".join(map(str, [name, *SIZE, *vector(places), *places[:3, 3], *shares])))
-    return "\n".join(rows) + "\n"
-
-
-def transforms(**changed: object) -> str:
-    frames = [
-        {
-            "file_path": f"./images/{name}/000000.jpg",
-            "transform_matrix": (np.linalg.inv(matrix) @ np.diag([1, -1, -1, 1])).tolist(),
-        }
-        for name, matrix in zip(NAMES, MATRICES, strict=True)
-    ]
-    lens = dict(zip(("k1", "k2", "p1", "p2"), LENS, strict=True))
-    pixels = {"fl_x": 61.0, "fl_y": 60.0, "cx": 19.7, "cy": 11.6, "w": SIZE[0], "h": SIZE[1]}
-    return json.dumps({"camera_model": "OPENCV", **pixels, **lens, "frames": frames} | changed)
-
-
-def write(folder: Path, kind: str) -> Path:
-    """A calibration of a kind; what is read of it."""
-    texts = {
-        "anipose": toml(),
-        "caliscope": toml(head="cameras.{name}", vectors=False),
-        "actorshq": actorshq(),
-        "transforms": transforms(),
-    }
-    if kind in texts:
-        file = folder / {"actorshq": "calibration.csv", "transforms": "transforms.json"}.get(kind, "Calib.toml")
-        file.write_text(texts[kind])
-        return file
-    if kind == "colmap binary":
-        colmap_binary(folder)
-    elif kind == "colmap":
-        colmap(folder)
-    else:
-        easymocap(folder, sized=kind == "easymocap", matrices=kind == "easymocap")
-    return folder
-
 
 KINDS = (
     "anipose",
