@@ -146,7 +146,7 @@ def test_what_a_page_has_drawn_is_timed(live: Live) -> None:
 
 def test_a_server_that_feeds_nobody_has_no_stream() -> None:
     with serving(player_site([], Shown("still"))) as server:
-        thread = Thread(target=server.serve_forever, args=(0.02,))
+        thread = Thread(target=server.serve_forever, args=(0.02,), daemon=True)
         thread.start()
         answer, connection = asked(server.server_port)
         with closing(connection):
