@@ -53,6 +53,13 @@ def test_weights_are_held_to_0_and_1(tmp_path: Path) -> None:
     np.testing.assert_array_equal(face.weights, [[0, 1]])
 
 
+def assert_refused(path: Path, text: str, sentence: str) -> None:
+    path.write_text(text)
+    with pytest.raises(InputError, match=sentence) as error:
+        read_face(path)
+    assert str(path) in str(error.value)
+
+
 @pytest.mark.parametrize(
     ("text", "sentence"),
     [
@@ -68,11 +75,7 @@ def test_weights_are_held_to_0_and_1(tmp_path: Path) -> None:
     ],
 )
 def test_a_damaged_recording_is_a_sentence(tmp_path: Path, text: str, sentence: str) -> None:
-    path = tmp_path / "talk.csv"
-    path.write_text(text)
-    with pytest.raises(InputError, match=sentence) as error:
-        read_face(path)
-    assert str(path) in str(error.value)
+    assert_refused(tmp_path / "talk.csv", text, sentence)
 
 
 def audio2face(**changed: Any) -> str:
@@ -101,11 +104,7 @@ def test_reads_a_face_of_audio2face(tmp_path: Path) -> None:
     ],
 )
 def test_a_damaged_face_of_audio2face_is_a_sentence(tmp_path: Path, text: str, sentence: str) -> None:
-    path = tmp_path / "talk.json"
-    path.write_text(text)
-    with pytest.raises(InputError, match=sentence) as error:
-        read_face(path)
-    assert str(path) in str(error.value)
+    assert_refused(tmp_path / "talk.json", text, sentence)
 
 
 def test_a_face_is_put_on_a_body_at_its_rate(tmp_path: Path) -> None:

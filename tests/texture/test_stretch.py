@@ -8,6 +8,7 @@ from surfel_coverage import coverage
 from tube import HEIGHT, tube
 
 from mua import rotation
+from mua.arrays import Array
 from mua.rig.character import Mesh
 from mua.rig.texel_map import build_texel_map
 from mua.texture.footprints import TexelPoints
@@ -62,10 +63,9 @@ def test_one_ring_pulled_apart_stays_closed_and_its_neighbours_small() -> None:
     assert coverage(middle, places, rotation.from_matrix(frames), scales).min() > 0.9
 
 
-def test_a_surfel_wider_than_the_sliver_it_lies_on_grows_by_what_the_sliver_opens() -> None:
-    thin, opened, deviation = 1e-4, 0.03, 0.01  # metres
-    corners = np.array([[0.0, 0, 0], [1, 0, 0], [0.5, thin, 0]])
-    stretch = SurfelStretch(
+def on_a_triangle(corners: Array, deviation: float) -> SurfelStretch:
+    """Of one round surfel in the middle of a triangle [3, 3]."""
+    return SurfelStretch(
         corners,
         np.array([[0, 1, 2]]),
         triangles=np.array([0]),
@@ -73,6 +73,12 @@ def test_a_surfel_wider_than_the_sliver_it_lies_on_grows_by_what_the_sliver_open
         rotations=np.array([[1.0, 0, 0, 0]]),
         deviations=np.full((1, 2), deviation),
     )
+
+
+def test_a_surfel_wider_than_the_sliver_it_lies_on_grows_by_what_the_sliver_opens() -> None:
+    thin, opened, deviation = 1e-4, 0.03, 0.01  # metres
+    corners = np.array([[0.0, 0, 0], [1, 0, 0], [0.5, thin, 0]])
+    stretch = on_a_triangle(corners, deviation)
     moved = corners + np.array([[0, 0, 0], [0, 0, 0], [0, opened, 0]])
     (along,), (across,) = stretch(moved, np.zeros((6, 1)), np.eye(4)[[0, 0, 0]])
     assert abs(along) <= HOLD
@@ -89,14 +95,7 @@ def test_no_surfel_spans_a_gap_that_opens_far_beyond_its_size() -> None:
 
 def test_a_surfel_that_leans_out_of_its_stretched_triangle_stands_off_by_part_of_its_rest_length() -> None:
     corners, deviation, lean = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), 0.01, 0.25  # radians about y
-    stretch = SurfelStretch(
-        corners,
-        np.array([[0, 1, 2]]),
-        triangles=np.array([0]),
-        barycentrics=np.full((1, 3), 1 / 3),
-        rotations=np.array([[1.0, 0, 0, 0]]),
-        deviations=np.full((1, 2), deviation),
-    )
+    stretch = on_a_triangle(corners, deviation)
     moved, longer = corners * [4, 1, 1], np.array([[15.0], [0], [0], [0], [0], [0]])
     flat, leaning = (
         stretch(moved, longer, rotation.from_axis_angle(np.eye(3)[[1, 1, 1]], angle)) for angle in (0, lean)

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from gltf_files import Glb, animate
+from animated_gltf import HUMANOID, animated, vrma, with_expressions, with_track
 from named_figures import written_names
 from people import hung_on_the_spine, lying, moving, on_thick_soles, person, walk
 from scipy.spatial.transform import Rotation
@@ -15,8 +15,6 @@ from shared_data import SharedData
 from web.test_modules import node, pytestmark  # noqa: F401  needs Node
 
 from mua import rotation
-from mua.arrays import Array
-from mua.characters.gltf.vrm import ROLES
 from mua.characters.read import read_animation, read_surfaces
 from mua.motion.face import own_face
 from mua.motion.load import load_motions
@@ -92,80 +90,6 @@ def test_real_motion_is_retargeted_as_the_package_does(
     assert_same(found, loaded.clip)
     assert found["name"] == path.stem
     assert set(found["notes"]) <= {*loaded.notes, *(note.removeprefix(f"{path.name}: ") for note in loaded.notes)}
-
-
-def animated(skeleton: Skeleton, clip: Clip, names: dict[str, str] | None = None) -> Glb:
-    """A .glb whose nodes are a skeleton's joints, under other names where given, and its animation."""
-    glb = Glb()
-    wxyz = [1, 2, 3, 0]
-    glb.json["nodes"] = [
-        {
-            "name": (names or {}).get(name, name),
-            "rotation": skeleton.bind_rotations[joint][wxyz].tolist(),
-            "translation": skeleton.bind_translations[joint].tolist(),
-            **({"children": children} if (children := np.flatnonzero(skeleton.parents == joint).tolist()) else {}),
-        }
-        for joint, name in enumerate(skeleton.names)
-    ]
-    glb.json["scenes"] = [{"nodes": np.flatnonzero(skeleton.parents < 0).tolist()}]
-    tracks = [(joint, "rotation", clip.rotations[:, joint][:, wxyz]) for joint in range(len(skeleton.names))]
-    tracks.append((skeleton.root, "translation", clip.translations[:, skeleton.root]))
-    for joint, path, values in tracks:
-        animate(glb, joint, path, times=np.arange(len(clip)) / clip.rate, values=values, name=clip.name)
-    return glb
-
-
-HUMANOID = {  # bones of VRM by joints of `person`
-    "Hips": "hips",
-    "Spine": "spine",
-    "Spine1": "chest",
-    "Spine2": "upperChest",
-    "Neck": "neck",
-    "Head": "head",
-} | {
-    f"{side}{joint}": f"{side.lower()}{bone}"
-    for side in ("Left", "Right")
-    for joint, bone in {
-        "Shoulder": "Shoulder",
-        "Arm": "UpperArm",
-        "ForeArm": "LowerArm",
-        "Hand": "Hand",
-        "UpLeg": "UpperLeg",
-        "Leg": "LowerLeg",
-        "Foot": "Foot",
-        "ToeBase": "Toes",
-    }.items()
-}
-
-
-def with_track(glb: Glb, path: str, values: Array, **node: Any) -> int:
-    """A further node, with a track of values at the times of the others; its number."""
-    nodes, animation = glb.json["nodes"], glb.json["animations"][0]
-    nodes.append(node)
-    nodes[0].setdefault("children", []).append(len(nodes) - 1)
-    animation["samplers"].append({"input": animation["samplers"][0]["input"], "output": glb.accessor(values)})
-    target = {"node": len(nodes) - 1, "path": path}
-    animation["channels"].append({"sampler": len(animation["samplers"]) - 1, "target": target})
-    return len(nodes) - 1
-
-
-def with_expressions(glb: Glb, **weights: Array) -> None:
-    """Tracks of expressions as VRMA has them: the place along x of a node each."""
-    presets = {}
-    for name, values in weights.items():
-        places = np.stack([values, 0 * values, 0 * values], axis=1)
-        presets[name] = {"node": with_track(glb, "translation", places, name=name, translation=[0, 0, 0])}
-    glb.json["extensions"]["VRMC_vrm_animation"]["expressions"] = {"preset": presets}
-
-
-def vrma(skeleton: Skeleton, clip: Clip) -> Glb:
-    """A .vrma: joints whose names say nothing, with the bones that they are stated apart."""
-    glb = animated(skeleton, clip, {name: f"n{joint}" for joint, name in enumerate(skeleton.names)})
-    bones = {bone: {"node": skeleton.names.index(joint)} for joint, bone in HUMANOID.items()}
-    assert set(bones) <= set(ROLES)
-    glb.json["extensionsUsed"] = ["VRMC_vrm_animation"]
-    glb.json["extensions"] = {"VRMC_vrm_animation": {"specVersion": "1.0", "humanoid": {"humanBones": bones}}}
-    return glb
 
 
 @pytest.mark.parametrize("suffix", ["glb", "vrma"])
