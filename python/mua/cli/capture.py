@@ -150,7 +150,7 @@ def _described(source: Path, folder: Path, given: _Given) -> "Capture":
     """The capture that a folder of another layout is."""
     from mua.capture.readers.avatarrex import RATE, is_avatarrex, read_avatarrex
     from mua.capture.readers.calibrations import calibration_in
-    from mua.capture.readers.calibrations.others import refuse_others
+    from mua.capture.readers.calibrations.refused import refuse_others
     from mua.capture.readers.streams import is_streams, read_streams
 
     if is_avatarrex(source):

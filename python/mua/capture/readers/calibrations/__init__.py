@@ -7,7 +7,7 @@ from mua.capture.readers.calibrations.anipose import read_anipose
 from mua.capture.readers.calibrations.calibrated import Calibrated
 from mua.capture.readers.calibrations.colmap import is_colmap, read_colmap
 from mua.capture.readers.calibrations.easymocap import EXTRINSICS, INTRINSICS, read_easymocap
-from mua.capture.readers.calibrations.others import refuse_others
+from mua.capture.readers.calibrations.refused import refuse_others
 from mua.capture.readers.calibrations.transforms import is_transforms, read_transforms
 from mua.errors import InputError
 
