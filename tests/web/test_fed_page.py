@@ -5,6 +5,7 @@ import time
 from threading import Thread
 
 import numpy as np
+import pytest
 from people import person
 from vmc_senders import bundle
 from web.browser import Browser
@@ -21,9 +22,14 @@ window.poses = [];
 const avatar = { setPose: (pose) => window.poses.push(pose) };
 Object.defineProperty(document.querySelector("mua-avatar"), "avatars", { value: [avatar] });
 """
+LATE = """
+const define = customElements.define.bind(customElements);
+customElements.define = (...given) => setTimeout(define, 500, ...given);
+"""  # as where the player's script comes long after the first poses
 
 
-def test_packets_become_poses_of_the_page_and_their_latency_is_measured(browser: Browser) -> None:
+@pytest.mark.parametrize("before", ["", LATE], ids=["at once", "late"])
+def test_packets_become_poses_of_the_page_and_their_latency_is_measured(browser: Browser, before: str) -> None:
     turned = bundle(
         ("/VMC/Ext/Bone/Pos", "Head", 0.0, 0.1, 0.0, 0.0, 0.6, 0.0, 0.8),
         ("/VMC/Ext/Blend/Val", "Joy", 0.5),
@@ -37,7 +43,8 @@ def test_packets_become_poses_of_the_page_and_their_latency_is_measured(browser:
         with serving(site, {PATH: feed}) as server:
             thread = Thread(target=server.serve_forever, args=(0.02,))
             thread.start()
-            page = browser.page(address(server))
+            page = browser.page(address(server), before=before)
+            page.wait('customElements.get("mua-avatar")')
             page.evaluate(f"(() => {{{KEEPING}}})()")
             with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as program:
                 end = time.monotonic() + 2 * EASING

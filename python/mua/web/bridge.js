@@ -19,5 +19,7 @@ export function follow(/** @type {{avatars: readonly Posable[]}} */ element, /**
 
 const element = globalThis.document?.querySelector("mua-avatar[live]");
 if (element) {
-  follow(/** @type {any} */ (element), new EventSource(/** @type {string} */ (element.getAttribute("live"))));
+  const source = /** @type {string} */ (element.getAttribute("live"));
+  const defined = customElements.whenDefined(element.localName); // by a script that comes after this one
+  void defined.then(() => follow(/** @type {any} */ (element), new EventSource(source)));
 }
