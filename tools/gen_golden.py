@@ -66,7 +66,19 @@ def document(stem: str, listed: list[Case]) -> tuple[str, bytes]:
         }
         for case in listed
     ]
-    return json.dumps({"kernel": f"{stem}.compute", "cases": found}, indent=1, allow_nan=False) + "\n", blob.content
+    return _text({"kernel": f"{stem}.compute", "cases": found}) + "\n", blob.content
+
+
+def _text(value: Any, margin: str = "\n") -> str:
+    """JSON with a line for each record that holds no other."""
+    inner = list(value.values()) if isinstance(value, dict) else value
+    if not isinstance(inner, list) or not any(isinstance(one, dict | list) and "{" in json.dumps(one) for one in inner):
+        return json.dumps(value, allow_nan=False)
+    deeper = margin + " "
+    keys = [f"{json.dumps(key)}: " for key in value] if isinstance(value, dict) else [""] * len(inner)
+    rows = [key + _text(one, deeper) for key, one in zip(keys, inner, strict=True)]
+    first, last = "{}" if isinstance(value, dict) else "[]"
+    return first + deeper + f",{deeper}".join(rows) + margin + last
 
 
 def generate() -> dict[Path, bytes]:
