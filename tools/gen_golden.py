@@ -3,13 +3,13 @@
 The format is on the page tests/parity/golden/README.md.
 """
 
-import argparse
 import json
 import sys
 from pathlib import Path
 from typing import Any
 
 import checkout  # noqa: F401
+import generated
 import numpy as np
 import shader_source
 
@@ -122,16 +122,5 @@ def _rounded_up(bound: float) -> float:
     return float(f"{1.005 * bound:.2e}")
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--check", action="store_true", help="exit 1 where a committed file differs")
-    check = parser.parse_args().check
-    for path, content in generate().items():
-        if not check:
-            path.write_bytes(content)
-        elif not path.is_file() or path.read_bytes() != content:
-            sys.exit(f"{path.relative_to(ROOT)} is out of date: run tools/gen_golden.py")
-
-
 if __name__ == "__main__":
-    main()
+    generated.run("gen_golden.py", __doc__, generate())
