@@ -24,7 +24,7 @@ from mua.errors import InputError
 
 def test_what_is_stale_is_named_and_then_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     right, stale, absent = (tmp_path / name for name in ("right.js", "stale.js", "absent.bin"))
-    contents = {right: "é", stale: "new", absent: b"\0"}
+    contents: dict[Path, str | bytes] = {right: "é", stale: "new", absent: b"\0"}
     right.write_bytes("é".encode())
     stale.write_text("old")
     monkeypatch.setattr("sys.argv", ["tool", "--check"])
