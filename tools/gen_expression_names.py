@@ -1,12 +1,12 @@
 """Write names of expressions for the browser and for Unity, from those of the package; --check compares them."""
 
-import argparse
 import json
 import re
-import sys
 import textwrap
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+
+import generated
 
 from mua.pose.expression_vocabulary import NAMES
 
@@ -25,7 +25,12 @@ TYPE = (
 )
 
 
-def module() -> str:
+def contents() -> dict[Path, str]:
+    """What each file is to hold."""
+    return {MODULE: _module(), CLASS: _script()}
+
+
+def _module() -> str:
     rows = "".join(f"  {name}: {_short(table)},\n" for name, table in NAMES.items())
     return f"{HEAD}{TYPE}export const TABLE = {{\n{rows}}};\n"
 
@@ -37,7 +42,7 @@ def _short(table: object) -> str:
     )
 
 
-def script() -> str:
+def _script() -> str:
     """C# with the same table."""
     vocabularies = "\n".join(
         f"            new[]\n            {{\n{_listed(NAMES[name], 16)}\n            }}," for name in ORDER
@@ -116,17 +121,5 @@ def _wrapped(parts: Sequence[str], indent: int) -> str:
     return "\n".join(lines).replace("\0", " ")
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--check", action="store_true", help="exit 1 where a committed file differs")
-    checks = parser.parse_args().check
-    for path, content in ((MODULE, module()), (CLASS, script())):
-        if path.is_file() and path.read_text(encoding="utf-8") == content:
-            continue
-        if checks:
-            sys.exit(f"{path.relative_to(ROOT)} is out of date: run tools/gen_expression_names.py")
-        path.write_text(content, encoding="utf-8")
-
-
 if __name__ == "__main__":
-    main()
+    generated.run("gen_expression_names.py", __doc__, contents())

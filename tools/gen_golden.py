@@ -3,13 +3,13 @@
 The format is on the page tests/parity/golden/README.md.
 """
 
-import argparse
 import json
 import sys
 from pathlib import Path
 from typing import Any
 
 import checkout  # noqa: F401
+import generated
 import numpy as np
 import shader_source
 
@@ -66,7 +66,19 @@ def document(stem: str, listed: list[Case]) -> tuple[str, bytes]:
         }
         for case in listed
     ]
-    return json.dumps({"kernel": f"{stem}.compute", "cases": found}, indent=1, allow_nan=False) + "\n", blob.content
+    return _text({"kernel": f"{stem}.compute", "cases": found}) + "\n", blob.content
+
+
+def _text(value: Any, margin: str = "\n") -> str:
+    """JSON with a line for each record that holds no other."""
+    inner = list(value.values()) if isinstance(value, dict) else value
+    if not isinstance(inner, list) or not any(isinstance(one, dict | list) and "{" in json.dumps(one) for one in inner):
+        return json.dumps(value, allow_nan=False)
+    deeper = margin + " "
+    keys = [f"{json.dumps(key)}: " for key in value] if isinstance(value, dict) else [""] * len(inner)
+    rows = [key + _text(one, deeper) for key, one in zip(keys, inner, strict=True)]
+    first, last = "{}" if isinstance(value, dict) else "[]"
+    return first + deeper + f",{deeper}".join(rows) + margin + last
 
 
 def generate() -> dict[Path, bytes]:
@@ -110,16 +122,5 @@ def _rounded_up(bound: float) -> float:
     return float(f"{1.005 * bound:.2e}")
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--check", action="store_true", help="exit 1 where a committed file differs")
-    check = parser.parse_args().check
-    for path, content in generate().items():
-        if not check:
-            path.write_bytes(content)
-        elif not path.is_file() or path.read_bytes() != content:
-            sys.exit(f"{path.relative_to(ROOT)} is out of date: run tools/gen_golden.py")
-
-
 if __name__ == "__main__":
-    main()
+    generated.run("gen_golden.py", __doc__, generate())

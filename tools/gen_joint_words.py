@@ -1,9 +1,9 @@
 """Write the words that tell joints by their names for browser and Unity, from the package's; --check compares."""
 
-import argparse
 import json
-import sys
 from pathlib import Path
+
+import generated
 
 from mua.characters.gltf import vrm
 from mua.pose import joint_names
@@ -27,7 +27,7 @@ TABLES = {  # from a word to a part, a side or a role
 }
 
 
-def generate() -> dict[Path, str]:
+def contents() -> dict[Path, str]:
     """What each file is to hold."""
     return {BROWSER: _javascript(), UNITY: _csharp()}
 
@@ -53,16 +53,5 @@ def _quoted(word: str) -> str:
     return json.dumps(word, ensure_ascii=False)
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--check", action="store_true", help="exit 1 where a committed file differs")
-    checks = parser.parse_args().check
-    for path, text in generate().items():
-        if not checks:
-            path.write_text(text, encoding="utf-8")
-        elif not path.is_file() or path.read_text(encoding="utf-8") != text:
-            sys.exit(f"{path.relative_to(ROOT)} is out of date: run tools/gen_joint_words.py")
-
-
 if __name__ == "__main__":
-    main()
+    generated.run("gen_joint_words.py", __doc__, contents())

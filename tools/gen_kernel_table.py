@@ -1,9 +1,8 @@
 """Write the table of kernels in ComputeShaders/README.md from the shaders; --check says whether it is up to date."""
 
-import argparse
-import sys
 from pathlib import Path
 
+import generated
 import shader_source
 from shader_source import Shader
 
@@ -49,15 +48,5 @@ def generate() -> str:
     return "\n".join([*lines[:start], *rows, *lines[end:], ""])
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--check", action="store_true", help="exit 1 where the committed file differs")
-    if parser.parse_args().check:
-        if README.read_text() != generate():
-            sys.exit(f"{README.relative_to(ROOT)} is out of date: run tools/gen_kernel_table.py")
-        return
-    README.write_text(generate())
-
-
 if __name__ == "__main__":
-    main()
+    generated.run("gen_kernel_table.py", __doc__, {README: generate()})

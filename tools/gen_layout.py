@@ -5,12 +5,13 @@ unity-package's Parser.cs reads by Layouts.cs, the browser player's parser.js by
 schema uses is understood; anything else stops with its line.
 """
 
-import argparse
 import json
 import re
 import runpy
 import sys
 from pathlib import Path
+
+import generated
 
 ROOT = Path(__file__).resolve().parents[1]
 SCHEMA = ROOT / "schemas" / "muaavatar.fbs"
@@ -192,18 +193,11 @@ def limits_javascript() -> str:
     return "// Generated from python/mua/limits.py by tools/gen_layout.py; do not edit.\n\n" + "".join(lines)
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--check", action="store_true", help="exit 1 where a committed file differs")
-    check = parser.parse_args().check
-    written = [(LAYOUT, generate()), (LAYOUTS, generate_csharp()), (LAYOUT_JS, generate_javascript())]
-    written += [(LIMITS_CS, limits_csharp()), (LIMITS_JS, limits_javascript())]
-    for path, text in written:
-        if not check:
-            path.write_text(text)
-        elif path.read_text() != text:
-            sys.exit(f"{path.relative_to(ROOT)} is out of date: run tools/gen_layout.py")
+def contents() -> dict[Path, str]:
+    """What each file is to hold."""
+    layouts = {LAYOUT: generate(), LAYOUTS: generate_csharp(), LAYOUT_JS: generate_javascript()}
+    return layouts | {LIMITS_CS: limits_csharp(), LIMITS_JS: limits_javascript()}
 
 
 if __name__ == "__main__":
-    main()
+    generated.run("gen_layout.py", __doc__, contents())

@@ -6,81 +6,54 @@ import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
-from types import ModuleType
 
 import checkout
 import compiled_folder
 import gen_expression_names
-import gen_golden
 import gen_joint_words
 import gen_kernel_table
 import gen_meta
 import gen_spirv
 import gen_wgsl
+import generated
 import pytest
 from compiled_folder import CompiledFolder
 
 from mua.errors import InputError
 
 
-@pytest.fixture
-def stale(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest) -> tuple[ModuleType, Path]:
-    """A tool, and a file in which something else stands than it writes."""
-    module = request.param
-    monkeypatch.setattr("sys.argv", [f"{module.__name__}.py"])
-    if module is gen_golden:
-        written = tmp_path / "golden.bin"
-        monkeypatch.setattr(module, "generate", lambda: {written: b"generated"})
-        monkeypatch.setattr(module, "ROOT", tmp_path)
-    elif module is gen_expression_names:
-        written = tmp_path / "table.js"
-        before = module.MODULE.read_text(encoding="utf-8")
-        written.write_text(before.replace("jawOpen", "jaw"), encoding="utf-8")
-        monkeypatch.setattr(module, "MODULE", written)
-        assert (module.module(), module.script()) == (before, module.CLASS.read_text(encoding="utf-8"))
-        monkeypatch.setattr(module, "CLASS", tmp_path / "Table.cs")
-        (tmp_path / "Table.cs").write_text(module.script(), encoding="utf-8")
-        monkeypatch.setattr(module, "ROOT", tmp_path)
-    elif module is gen_joint_words:
-        written = tmp_path / "joint_words.js"
-        for path, text in module.generate().items():
-            assert path.read_text(encoding="utf-8") == text  # the checkout's own
-        written.write_text("stale", encoding="utf-8")
-        monkeypatch.setattr(module, "generate", lambda: {written: "generated"})
-        monkeypatch.setattr(module, "ROOT", tmp_path)
-    elif module is gen_kernel_table:
-        written = tmp_path / "README.md"
-        before = module.README.read_text()
-        written.write_text(before)
-        monkeypatch.setattr(module, "README", written)
-        monkeypatch.setattr(module, "ROOT", tmp_path)
-        assert module.generate() == before  # the checkout's own
-        written.write_text(before.replace("| 256 |", "| 255 |"))
-    else:
-        written = tmp_path / "package.json.meta"
-        (tmp_path / "package.json").write_text('{"name": "com.mua.test"}')
-        monkeypatch.setattr(module, "PACKAGES", [tmp_path / "nowhere", tmp_path])
-    return module, written
+def test_what_is_stale_is_named_and_then_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    right, stale, absent = (tmp_path / name for name in ("right.js", "stale.js", "absent.bin"))
+    contents: dict[Path, str | bytes] = {right: "é", stale: "new", absent: b"\0"}
+    right.write_bytes("é".encode())
+    stale.write_text("old")
+    monkeypatch.setattr("sys.argv", ["tool", "--check"])
+    with pytest.raises(SystemExit, match=r"stale\.js is out of date: run tools/gen\.py"):
+        generated.run("gen.py", "About.", contents)
+    assert stale.read_text() == "old"
+    monkeypatch.setattr("sys.argv", ["tool"])
+    generated.run("gen.py", "About.", contents)
+    assert [path.read_bytes() for path in contents] == ["é".encode(), b"new", b"\0"]
+    monkeypatch.setattr("sys.argv", ["tool", "--check"])
+    generated.run("gen.py", "About.", contents)
 
 
-@pytest.mark.parametrize(
-    "stale", [gen_expression_names, gen_golden, gen_joint_words, gen_kernel_table, gen_meta], indirect=True
-)
-def test_what_is_stale_is_named_and_then_written(
-    stale: tuple[ModuleType, Path], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    module, path = stale
-    before = path.read_bytes() if path.is_file() else None
-    with monkeypatch.context() as checking:
-        checking.setattr("sys.argv", ["tool", "--check"])
-        with pytest.raises(SystemExit, match=rf"{path.name} is (?s:.*)run tools/{module.__name__}\.py"):
-            module.main()
-        assert (path.read_bytes() if path.is_file() else None) == before
-        with monkeypatch.context() as writing:
-            writing.setattr("sys.argv", ["tool"])
-            module.main()
-        assert path.read_bytes() != before
-        module.main()
+def test_what_the_tools_write_stands_in_the_checkout() -> None:
+    tables = {gen_kernel_table.README: gen_kernel_table.generate()}
+    for path, text in (gen_expression_names.contents() | gen_joint_words.contents() | tables).items():
+        assert path.read_text(encoding="utf-8") == text
+
+
+def test_metas_that_are_stale_are_named_and_then_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "package.json").write_text('{"name": "com.mua.test"}')
+    monkeypatch.setattr(gen_meta, "PACKAGES", [tmp_path / "nowhere", tmp_path])
+    monkeypatch.setattr("sys.argv", ["tool", "--check"])
+    with pytest.raises(SystemExit, match=r"package\.json\.meta is (?s:.*)run tools/gen_meta\.py"):
+        gen_meta.main()
+    assert not (tmp_path / "package.json.meta").exists()
+    monkeypatch.setattr("sys.argv", ["tool"])
+    gen_meta.main()
+    assert (tmp_path / "package.json.meta").is_file()
 
 
 @pytest.fixture(params=[gen_spirv.SPIRV, gen_wgsl.WGSL], ids=["spirv", "wgsl"])

@@ -268,14 +268,13 @@ def main() -> None:
     parser.add_argument("character", nargs="?", type=Path, help="that it was baked from; none: the procedural one")
     parser.add_argument("--recording", type=Path, required=True, help="in the work directory of the bake")
     parser.add_argument("--motion", type=Path, action="append", default=[], help="file or directory")
-    parser.add_argument("--cache", type=Path, default=Path("build/unseen"), help="keeps the teacher's frames")
     parser.add_argument("--json", type=Path, help="writes all figures")
     parser.add_argument("--sheet", type=Path, help="writes an image of the worst frames of the three worst motions")
     parser.add_argument("--show", action="append", default=[], help="MOTION=FRAME, to be in the image instead")
     given = parser.parse_args()
     avatar = read(given.file)
     fit = given.recording.with_name(f"{given.recording.name.replace('recording', 'fit')}.npy")
-    teacher = Teacher(given.character, given.cache, texels=avatar.rig.texels.size, fit=fit)
+    teacher = Teacher(given.character, texels=avatar.rig.texels.size, fit=fit)
     measurement = Measurement(avatar, teacher, Recording(given.recording))
     paths = [path for motion in given.motion for path in (sorted(motion.iterdir()) if motion.is_dir() else [motion])]
     motions = [*motions_of(teacher.character, paths), *broken_rigs(avatar)]

@@ -1,25 +1,21 @@
-"""A character's simulated teacher on motion that an avatar has not been trained on; its frames are kept on disk.
+"""A character's simulated teacher on motion that an avatar has not been trained on.
 
 Motion of all kinds is cut to its most active seconds. A live rig with a broken joint and random joint angles are made
 from the walk that the avatar was trained on.
 """
 
-import hashlib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
-import mua
 from mua import rotation
 from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.atlas.detail import read_detail
-from mua.baking.resumed_recording import motion_bytes
 from mua.baking.sources import load_character
 from mua.errors import InputError
-from mua.files.write import replacing
 from mua.motion.load import load_motions
 from mua.pose.clip import Clip
 from mua.pose.encoding import RATE
@@ -28,7 +24,6 @@ from mua.rig.character import Character
 from mua.teacher import TeacherFrame
 from mua.teachers.simulated.teacher import SimulatedTeacher
 
-SOURCES = Path(mua.__file__).parent  # the simulation and all that it takes from elsewhere
 LONGEST = 4.0  # seconds of a motion
 RUN_UP = 0.5  # seconds that are simulated and not measured: a teacher's cloth is at rest when a clip begins
 EVERY, MOST = 5, 24  # of the frames after that, one in so many is measured, and no more than so many
@@ -102,23 +97,16 @@ def broken_rigs(avatar: Avatar, *, seed: int = 0) -> Iterator[Motion]:
 
 
 class Teacher:
-    """Teacher frames of a character, simulated where no earlier run has kept them in `cache`.
+    """The simulated teacher of a character."""
 
-    They are found again by the character's file, the motion and the package's sources.
-    """
-
-    def __init__(self, path: Path | None, cache: Path, *, texels: int, seed: int = 0, fit: Path | None = None) -> None:
+    def __init__(self, path: Path | None, *, texels: int, fit: Path | None = None) -> None:
         """Load the character at `path`, or the procedural one, as a bake does, and the corrections that it kept."""
         detail = None if path is None else read_detail((), uv="auto")
-        self.character = load_character(path, uv="auto", seed=seed, detail=detail)
-        content = b"procedural" if path is None else path.read_bytes()
-        self._corrections = None if fit is None or not fit.exists() else np.load(fit)
-        fitted = b"" if self._corrections is None else self._corrections.tobytes()
-        self._key = hashlib.sha256(f"{texels} {seed}".encode() + content + fitted)
-        for source in sorted(SOURCES.rglob("*.py")):
-            self._key.update(source.read_bytes())
-        self._cache, self._texels, self._seed = cache, texels, seed
-        self._simulated: SimulatedTeacher | None = None
+        self.character = load_character(path, uv="auto", seed=0, detail=detail)
+        bare = replace(self.character, clips=(), source=None)
+        self._simulated = SimulatedTeacher(bare, texels=texels)
+        if fit is not None and fit.exists():
+            self._simulated = self._simulated.corrected(np.load(fit))
 
     def shown(
         self,
@@ -126,28 +114,9 @@ class Teacher:
         reference: Array,  # [N, 23] whose hemispheres the rotations are brought to
     ) -> Iterator[Shown]:
         """The frames of a motion that are measured, its cloth in motion since the first frame of the clip."""
-        key = self._key.copy()
-        key.update(motion_bytes(motion.clip) + motion.frames.tobytes())
-        path = self._cache / f"{key.hexdigest()[:16]}.npz"
-        if not path.exists():
-            self._keep(path, motion)
-        with np.load(path) as kept:
-            meshes, textures = kept["meshes"], kept["textures"]
-        for frame, mesh, texture in zip(motion.frames, meshes, textures, strict=True):
-            yield Shown(int(frame), mesh, align_rotations(texture.astype(np.float32), reference))
-
-    def _keep(self, path: Path, motion: Motion) -> None:
-        if self._simulated is None:
-            bare = replace(self.character, clips=(), source=None)
-            self._simulated = SimulatedTeacher(bare, texels=self._texels, seed=self._seed)
-            if self._corrections is not None:
-                self._simulated = self._simulated.corrected(self._corrections)
-        shown = self._simulated.frames(motion.clip, frozenset(motion.frames.tolist()))
-        whole = [frame for frame in shown if isinstance(frame, TeacherFrame)]
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with replacing(path) as temporary:
-            textures = np.stack([frame.texture for frame in whole]).astype(np.float16)
-            np.savez(temporary, meshes=np.stack([frame.mesh for frame in whole]), textures=textures)
+        for index, frame in enumerate(self._simulated.frames(motion.clip, frozenset(motion.frames.tolist()))):
+            if isinstance(frame, TeacherFrame):
+                yield Shown(index, frame.mesh, align_rotations(frame.texture, reference))
 
 
 def _broken(walk: Clip, name: str, joint: int, axis: Array, angles: Array) -> Motion:
