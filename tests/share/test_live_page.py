@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 from commands import Commands
 from people import person
+from servers import answering
 from vmc_senders import BODY, bundle
 
 from mua.live import live_pose
@@ -49,14 +50,8 @@ def live() -> Live:
 @contextmanager
 def served(feed: Feed) -> Iterator[int]:
     """The port of a server of a page that is fed."""
-    with serving(live_site(player_site([], Shown("live"))), {PATH: feed}) as server:
-        thread = Thread(target=server.serve_forever, args=(0.02,))
-        thread.start()
-        try:
-            yield server.server_port
-        finally:
-            server.shutdown()
-            thread.join()
+    with serving(live_site(player_site([], Shown("live"))), {PATH: feed}) as server, answering(server):
+        yield server.server_port
 
 
 @pytest.fixture
@@ -145,14 +140,10 @@ def test_what_a_page_has_drawn_is_timed(live: Live) -> None:
 
 
 def test_a_server_that_feeds_nobody_has_no_stream() -> None:
-    with serving(player_site([], Shown("still"))) as server:
-        thread = Thread(target=server.serve_forever, args=(0.02,), daemon=True)
-        thread.start()
+    with serving(player_site([], Shown("still"))) as server, answering(server):
         answer, connection = asked(server.server_port)
         with closing(connection):
             assert answer.status == 404
-        server.shutdown()
-        thread.join()
 
 
 def test_mua_view_feeds_its_page_with_what_it_hears(

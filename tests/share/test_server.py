@@ -16,6 +16,7 @@ from typing import Any, BinaryIO
 import pytest
 from commands import Commands
 from page_tags import Tags
+from servers import answering
 
 from mua.cli.view_options import Asked
 from mua.cli.view_web import attributes
@@ -35,12 +36,9 @@ def port(tmp_path: Path) -> Iterator[int]:
     names = ("index.html", "a.js", "x.wgsl", "style.css", "poster.png", "icon.svg")
     files: dict[str, site.Content] = dict.fromkeys(names, b"1")
     with serving({**files, "my hero.muaavatar": tmp_path / "hero.muaavatar", "gone": tmp_path / "gone"}) as server:
-        thread = Thread(target=server.serve_forever, args=(0.02,))
-        thread.start()
-        assert server.server_address[0] == AUTHORITY  # no other machine reaches it
-        yield server.server_port
-        server.shutdown()
-        thread.join()
+        with answering(server):
+            assert server.server_address[0] == AUTHORITY  # no other machine reaches it
+            yield server.server_port
 
 
 def ask(port: int, path: str, method: str = "GET", **headers: str) -> tuple[int, dict[str, str], bytes]:
