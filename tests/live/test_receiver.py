@@ -101,12 +101,12 @@ def test_closing_ends_the_thread_although_a_player_takes_what_comes(monkeypatch:
 
     def preempted(*given: Any) -> Any:
         closed.wait()
-        receiver.newest(time.monotonic())  # as a player that draws at this moment
+        opened.newest(time.monotonic())  # as a player that draws at this moment
         return waiting(*given)
 
     monkeypatch.setattr(select, "select", preempted)
-    receiver = Receiver(Address(0))
-    closing = threading.Thread(target=receiver.close, daemon=True)
+    opened = Receiver(Address(0))
+    closing = threading.Thread(target=opened.close, daemon=True)
     closing.start()
     closing.join(0.05)  # it waits for the thread
     closed.set()

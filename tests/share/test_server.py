@@ -35,10 +35,10 @@ def port(tmp_path: Path) -> Iterator[int]:
     (tmp_path / "secret.txt").write_text("secret")
     names = ("index.html", "a.js", "x.wgsl", "style.css", "poster.png", "icon.svg")
     files: dict[str, site.Content] = dict.fromkeys(names, b"1")
-    with serving({**files, "my hero.muaavatar": tmp_path / "hero.muaavatar", "gone": tmp_path / "gone"}) as server:
-        with answering(server):
-            assert server.server_address[0] == AUTHORITY  # no other machine reaches it
-            yield server.server_port
+    files |= {"my hero.muaavatar": tmp_path / "hero.muaavatar", "gone": tmp_path / "gone"}
+    with serving(files) as server, answering(server):
+        assert server.server_address[0] == AUTHORITY  # no other machine reaches it
+        yield server.server_port
 
 
 def ask(port: int, path: str, method: str = "GET", **headers: str) -> tuple[int, dict[str, str], bytes]:

@@ -28,10 +28,10 @@ def page(browser: Browser) -> Iterator[Page]:
     with (
         serving({**player_files(), **cases, "golden.js": SCRIPT, "index.html": page_file}) as server,
         answering(server),
+        browser.page(address(server)) as opened,
     ):
-        with browser.page(address(server)) as opened:
-            opened.wait("globalThis.replay !== undefined")
-            yield opened
+        opened.wait("globalThis.replay !== undefined")
+        yield opened
 
 
 @pytest.mark.parametrize("golden", ALL, ids=str)

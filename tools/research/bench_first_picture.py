@@ -11,12 +11,12 @@ import time
 from contextlib import closing
 from io import BufferedIOBase
 from pathlib import Path
-from threading import Thread
 from typing import IO, Any
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path += [str(ROOT / "tests"), str(ROOT / "tests" / "fixtures")]
 
+from servers import answering  # noqa: E402
 from web.browser import Browser  # noqa: E402
 from web.pages import ELEMENT  # noqa: E402
 
