@@ -63,6 +63,7 @@ def test_as_many_buffers_as_a_kernel_and_a_draw_take_are_enough(story: Story) ->
         ("LacksKernel", "first", "splat_sort.compute"),
         ("LacksResources", "first", "MuaAvatarResources"),
         ("LacksCompute", "first", "compute shaders"),
+        ("LacksThreads", "first", "no threads"),
         ("LacksBuffers", "first", "4 buffers in a compute kernel"),
         ("LacksVertexBuffers", "first", "2 buffers in a vertex shader"),
         ("LacksMemory", "first", "4096"),

@@ -276,6 +276,12 @@ namespace Mua
             Show(files[0]);
         }
 
+        private static void LacksThreads()
+        {
+            Machine.Platform(RuntimePlatform.WebGLPlayer);
+            Fails();
+        }
+
         private static void LacksBuffers()
         {
             Machine.ComputeBuffers(4);
