@@ -156,7 +156,7 @@ def test_mua_view_feeds_its_page_with_what_it_hears(
             for _ in range(3):
                 server.handle_request()
 
-        thread = Thread(target=answer)
+        thread = Thread(target=answer, daemon=True)
         thread.start()
         for path in ("/", "/bridge.js"):
             page = http.client.HTTPConnection("127.0.0.1", server.server_port, timeout=WAIT)

@@ -52,7 +52,7 @@ def ask(port: int, path: str, method: str = "GET", **headers: str) -> tuple[int,
 def test_a_connection_that_is_reset_prints_nothing(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     with serving({"index.html": b"1"}) as server:
         server.daemon_threads = False  # so that closing waits for the answer
-        thread = Thread(target=server.handle_request)
+        thread = Thread(target=server.handle_request, daemon=True)
         thread.start()
         client = socket.create_connection((AUTHORITY, server.server_port))
         client.sendall(b"GET / HTTP/1.1\r\nHost: another\r\n\r\n")
@@ -78,7 +78,7 @@ def test_an_answer_ends_where_its_file_is_replaced_meanwhile(tmp_path: Path, ste
     path = tmp_path / f"{stem}.muaavatar"
     path.write_bytes(BYTES)
     with serving({"a": Changing(path)}) as server:
-        thread = Thread(target=server.handle_request)
+        thread = Thread(target=server.handle_request, daemon=True)
         thread.start()
         with pytest.raises(http.client.IncompleteRead) as cut:
             ask(server.server_port, "/a")
