@@ -112,7 +112,9 @@ def test_a_pose_that_stays_is_sent_again_for_avatars_that_come_later(monkeypatch
     [
         (f"/{PATH}", {"Origin": "https://example.org"}),
         (f"/{PATH}", {"Origin": "null"}),
+        (f"/{PATH}", {"Origin": "http://127.0.0.1:3000"}),  # another server of this machine
         (f"/{PATH}", {"Host": "example.org"}),
+        (f"/{PATH}", {"Host": "example.org", "Origin": "http://example.org"}),
     ],
 )
 @pytest.mark.parametrize("method", ["GET", "POST"])
@@ -120,6 +122,12 @@ def test_nobody_but_the_page_is_given_poses(port: int, method: str, path: str, h
     answer, connection = asked(port, path, method=method, body="1" if method == "POST" else None, **headers)
     with closing(connection):
         assert answer.status == 403
+
+
+def test_a_page_on_a_port_that_ssh_forwards_is_given_poses(port: int) -> None:
+    answer, connection = asked(port, Host="localhost:8080", Origin="http://localhost:8080")
+    with closing(connection):
+        assert len(text(answer)["avatars"]) == 2
 
 
 @pytest.mark.parametrize(("path", "body", "status"), [("/index.html", "1", 403), (f"/{PATH}", 33 * "1", 400)])

@@ -163,7 +163,9 @@ def test_a_head_has_no_body(port: int) -> None:
 
 def test_another_name_for_this_address_is_refused(port: int) -> None:
     assert ask(port, "/", Host=f"evil.example:{port}")[0] == 421
+    assert ask(port, "/", Host=f"localhost.evil.example:{port}")[0] == 421
     assert ask(port, "/", Host=f"localhost:{port}")[0] == 200
+    assert ask(port, "/", Host="localhost:8080")[0] == 200, "a port that ssh forwards"
 
 
 def test_mua_view_serves_until_it_is_interrupted(avatar_file: Path) -> None:
