@@ -34,7 +34,7 @@ export class Device {
   }
 
   constructor(/** @type {GPUAdapter} */ adapter, /** @type {GPUDevice} */ gpu) {
-    const { vendor, architecture, description } = adapter.info ?? {}; // Chrome has it since version 121
+    const { vendor, architecture, description } = adapter.info;
     this.name = description || [vendor, architecture].filter(Boolean).join(" ");
     this.gpu = gpu;
     this.since = performance.now();

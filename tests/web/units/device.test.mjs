@@ -67,10 +67,6 @@ test("a device is called as the browser describes it, or by its maker", () => {
   );
 });
 
-test("a device is called something where the browser does not describe it", () => {
-  assert.equal(new Device({}, fakeGpu()).name, "");
-});
-
 test("where there is no WebGPU, a page that is not secure is told that this is why", async () => {
   const { createPlayer } = await import("../../../python/mua/web/player.js");
   await assert.rejects(createPlayer({}), { name: "AvatarError", message: /no WebGPU/ });
