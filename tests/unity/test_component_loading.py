@@ -58,6 +58,7 @@ def test_as_many_buffers_as_a_kernel_and_a_draw_take_are_enough(story: Story) ->
     [
         ("Fails", "damaged", "crc32"),
         ("Fails", "absent", "absent.muaavatar"),
+        ("FailsAtAddress", "first", "https:// is no address: "),
         ("FailsInEditor", "damaged", "crc32"),
         ("FailsInEditor", "absent", "absent.muaavatar"),
         ("LacksKernel", "first", "splat_sort.compute"),

@@ -249,6 +249,12 @@ namespace Mua
             Say("held", Recorder.AliveCount + Requests.Open);
         }
 
+        private static void FailsAtAddress()
+        {
+            files[0] = "https://";
+            Fails();
+        }
+
         private static void FailsInEditor()
         {
             Machine.Playing(false);
