@@ -21,7 +21,7 @@ test: setup check
 	$(PYTEST)
 
 test-long: setup
-	$(PYTEST) -m long
+	$(PYTEST) -m long -o faulthandler_timeout=0
 
 # The browser player in a headless browser with WebGPU on the CPU. Tests skip and name what is missing.
 test-web: setup
@@ -30,7 +30,7 @@ test-web: setup
 
 # 100,000 avatars that nobody wrote, plain and packed ones, through the readers in Python, C# and JavaScript.
 test-files: setup
-	$(PYTEST) -m long -k mutants -rP tests/unity/test_mutants.py
+	$(PYTEST) -m long -o faulthandler_timeout=0 -k mutants -rP tests/unity/test_mutants.py
 
 # The wheel in an empty environment, its commands without a compiler; downloads about 1 GB.
 test-wheel: setup demo

@@ -48,6 +48,16 @@ def test_what_has_the_storage_already_is_refused(command: Commands, avatar_file:
     assert not again.exists()
 
 
+def test_the_file_itself_is_not_overwritten(command: Commands, avatar_file: Path, tmp_path: Path) -> None:
+    own, linked = tmp_path / "own.muaavatar", tmp_path / "linked.muaavatar"
+    own.write_bytes(avatar_file.read_bytes())
+    linked.symlink_to(own)
+    for target in (own, linked):
+        sentence = command("pack", own, "-o", target).sentence
+        assert sentence == f"error: -o is {target}; that is FILE itself; give another name"
+    assert own.read_bytes() == avatar_file.read_bytes()
+
+
 def test_coarser_rounding_is_a_smaller_file_farther_from_the_original(
     command: Commands, avatar_file: Path, tmp_path: Path
 ) -> None:

@@ -173,7 +173,7 @@ def test_a_window_shows_what_another_program_sends(
         def __init__(self, address: Address) -> None:
             super().__init__(Address(0, address.host))
             heard.append(address)
-            self.program = Thread(target=self.send)
+            self.program = Thread(target=self.send, daemon=True)
             self.program.start()
 
         def send(self) -> None:

@@ -1,8 +1,10 @@
 """The UDP port: a stream over the loopback poses as the clip, wrong packets are counted, closing ends the thread."""
 
+import select
 import threading
 import time
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 import pytest
@@ -18,6 +20,7 @@ from mua.motion.bvh import read_bvh
 from mua.pose.encoding import PoseEncoding
 
 SINGLE = 12 * 4 * float(np.finfo(np.float32).eps)
+PATIENCE = 10  # seconds for what takes none
 
 
 @pytest.fixture
@@ -91,3 +94,21 @@ def test_a_closed_port_is_free_again_and_nothing_runs_on() -> None:
     assert set(threading.enumerate()) == before
     first.close()
     Receiver(first.address).close()
+
+
+def test_closing_ends_the_thread_although_a_player_takes_what_comes(monkeypatch: pytest.MonkeyPatch) -> None:
+    waiting, closed = select.select, threading.Event()
+
+    def preempted(*given: Any) -> Any:
+        closed.wait()
+        opened.newest(time.monotonic())  # as a player that draws at this moment
+        return waiting(*given)
+
+    monkeypatch.setattr(select, "select", preempted)
+    opened = Receiver(Address(0))
+    closing = threading.Thread(target=opened.close, daemon=True)
+    closing.start()
+    closing.join(0.05)  # it waits for the thread
+    closed.set()
+    closing.join(PATIENCE)
+    assert not closing.is_alive()

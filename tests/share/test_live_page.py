@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 from commands import Commands
 from people import person
+from servers import answering
 from vmc_senders import BODY, bundle
 
 from mua.live import live_pose
@@ -49,14 +50,8 @@ def live() -> Live:
 @contextmanager
 def served(feed: Feed) -> Iterator[int]:
     """The port of a server of a page that is fed."""
-    with serving(live_site(player_site([], Shown("live"))), {PATH: feed}) as server:
-        thread = Thread(target=server.serve_forever, args=(0.02,))
-        thread.start()
-        try:
-            yield server.server_port
-        finally:
-            server.shutdown()
-            thread.join()
+    with serving(live_site(player_site([], Shown("live"))), {PATH: feed}) as server, answering(server):
+        yield server.server_port
 
 
 @pytest.fixture
@@ -117,7 +112,9 @@ def test_a_pose_that_stays_is_sent_again_for_avatars_that_come_later(monkeypatch
     [
         (f"/{PATH}", {"Origin": "https://example.org"}),
         (f"/{PATH}", {"Origin": "null"}),
+        (f"/{PATH}", {"Origin": "http://127.0.0.1:3000"}),  # another server of this machine
         (f"/{PATH}", {"Host": "example.org"}),
+        (f"/{PATH}", {"Host": "example.org", "Origin": "http://example.org"}),
     ],
 )
 @pytest.mark.parametrize("method", ["GET", "POST"])
@@ -125,6 +122,12 @@ def test_nobody_but_the_page_is_given_poses(port: int, method: str, path: str, h
     answer, connection = asked(port, path, method=method, body="1" if method == "POST" else None, **headers)
     with closing(connection):
         assert answer.status == 403
+
+
+def test_a_page_on_a_port_that_ssh_forwards_is_given_poses(port: int) -> None:
+    answer, connection = asked(port, Host="localhost:8080", Origin="http://localhost:8080")
+    with closing(connection):
+        assert len(text(answer)["avatars"]) == 2
 
 
 @pytest.mark.parametrize(("path", "body", "status"), [("/index.html", "1", 403), (f"/{PATH}", 33 * "1", 400)])
@@ -145,14 +148,10 @@ def test_what_a_page_has_drawn_is_timed(live: Live) -> None:
 
 
 def test_a_server_that_feeds_nobody_has_no_stream() -> None:
-    with serving(player_site([], Shown("still"))) as server:
-        thread = Thread(target=server.serve_forever, args=(0.02,), daemon=True)
-        thread.start()
+    with serving(player_site([], Shown("still"))) as server, answering(server):
         answer, connection = asked(server.server_port)
         with closing(connection):
             assert answer.status == 404
-        server.shutdown()
-        thread.join()
 
 
 def test_mua_view_feeds_its_page_with_what_it_hears(
@@ -165,7 +164,7 @@ def test_mua_view_feeds_its_page_with_what_it_hears(
             for _ in range(3):
                 server.handle_request()
 
-        thread = Thread(target=answer)
+        thread = Thread(target=answer, daemon=True)
         thread.start()
         for path in ("/", "/bridge.js"):
             page = http.client.HTTPConnection("127.0.0.1", server.server_port, timeout=WAIT)

@@ -16,6 +16,7 @@ from typing import Any, BinaryIO
 import pytest
 from commands import Commands
 from page_tags import Tags
+from servers import answering
 
 from mua.cli.view_options import Asked
 from mua.cli.view_web import attributes
@@ -34,13 +35,10 @@ def port(tmp_path: Path) -> Iterator[int]:
     (tmp_path / "secret.txt").write_text("secret")
     names = ("index.html", "a.js", "x.wgsl", "style.css", "poster.png", "icon.svg")
     files: dict[str, site.Content] = dict.fromkeys(names, b"1")
-    with serving({**files, "my hero.muaavatar": tmp_path / "hero.muaavatar", "gone": tmp_path / "gone"}) as server:
-        thread = Thread(target=server.serve_forever, args=(0.02,))
-        thread.start()
+    files |= {"my hero.muaavatar": tmp_path / "hero.muaavatar", "gone": tmp_path / "gone"}
+    with serving(files) as server, answering(server):
         assert server.server_address[0] == AUTHORITY  # no other machine reaches it
         yield server.server_port
-        server.shutdown()
-        thread.join()
 
 
 def ask(port: int, path: str, method: str = "GET", **headers: str) -> tuple[int, dict[str, str], bytes]:
@@ -54,7 +52,7 @@ def ask(port: int, path: str, method: str = "GET", **headers: str) -> tuple[int,
 def test_a_connection_that_is_reset_prints_nothing(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     with serving({"index.html": b"1"}) as server:
         server.daemon_threads = False  # so that closing waits for the answer
-        thread = Thread(target=server.handle_request)
+        thread = Thread(target=server.handle_request, daemon=True)
         thread.start()
         client = socket.create_connection((AUTHORITY, server.server_port))
         client.sendall(b"GET / HTTP/1.1\r\nHost: another\r\n\r\n")
@@ -80,7 +78,7 @@ def test_an_answer_ends_where_its_file_is_replaced_meanwhile(tmp_path: Path, ste
     path = tmp_path / f"{stem}.muaavatar"
     path.write_bytes(BYTES)
     with serving({"a": Changing(path)}) as server:
-        thread = Thread(target=server.handle_request)
+        thread = Thread(target=server.handle_request, daemon=True)
         thread.start()
         with pytest.raises(http.client.IncompleteRead) as cut:
             ask(server.server_port, "/a")
@@ -165,7 +163,9 @@ def test_a_head_has_no_body(port: int) -> None:
 
 def test_another_name_for_this_address_is_refused(port: int) -> None:
     assert ask(port, "/", Host=f"evil.example:{port}")[0] == 421
+    assert ask(port, "/", Host=f"localhost.evil.example:{port}")[0] == 421
     assert ask(port, "/", Host=f"localhost:{port}")[0] == 200
+    assert ask(port, "/", Host="localhost:8080")[0] == 200, "a port that ssh forwards"
 
 
 def test_mua_view_serves_until_it_is_interrupted(avatar_file: Path) -> None:

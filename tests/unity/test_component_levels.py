@@ -43,7 +43,8 @@ def test_avatars_share_a_budget_the_nearest_first(story: Story) -> None:
     assert reported["later"] == [
         f"{first[0]} {second[0]}",
         f"{first[2]} {second[2]}",
-    ]  # the budget that came last counts
+    ]  # the budget that was enabled last counts
+    assert reported["earlier"] == [f"{first[2]} {second[2]}"]  # where that one goes, the one before does
     assert reported["free"] == [f"{first[0]} {second[0]}"]
     assert reported["allocated"] == ["0"]
     assert reported["log"] == []

@@ -58,11 +58,13 @@ def test_as_many_buffers_as_a_kernel_and_a_draw_take_are_enough(story: Story) ->
     [
         ("Fails", "damaged", "crc32"),
         ("Fails", "absent", "absent.muaavatar"),
+        ("FailsAtAddress", "first", "https:// is no address: "),
         ("FailsInEditor", "damaged", "crc32"),
         ("FailsInEditor", "absent", "absent.muaavatar"),
         ("LacksKernel", "first", "splat_sort.compute"),
         ("LacksResources", "first", "MuaAvatarResources"),
         ("LacksCompute", "first", "compute shaders"),
+        ("LacksThreads", "first", "no threads"),
         ("LacksBuffers", "first", "4 buffers in a compute kernel"),
         ("LacksVertexBuffers", "first", "2 buffers in a vertex shader"),
         ("LacksMemory", "first", "4096"),

@@ -69,3 +69,9 @@ def test_a_rig_whose_rest_pose_does_not_stand_is_refused_with_a_sentence(story: 
     assert "the rig figure cannot be followed: its rest pose shows no body that stands" in reported["message"][0]
     assert reported["state"] == ["Ready"]
     assert len(reported["log"]) == 1
+
+
+def test_whatever_a_rig_is_refused_for_while_loading_is_a_sentence(story: Story, people: Path) -> None:
+    reported = story("RefusesNothing", "ours", "theirs")
+    assert (reported["state"], reported["held"]) == (["Failed"], ["0"])
+    assert "ours.muaavatar: " in reported["message"][0]

@@ -6,7 +6,8 @@ It needs Debian's `chromium-headless-shell` (or `chromium`), Node and the packag
 import json
 import shutil
 import subprocess
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -47,6 +48,7 @@ class Browser:
         assert "error" not in answer, answer["error"]
         return answer["value"]
 
+    @contextmanager
     def page(
         self,
         url: str | None = None,
@@ -55,15 +57,18 @@ class Browser:
         before: str = "",  # a script that runs before those of the page
         touch: bool = False,
         **media: str,  # features, as prefers_color_scheme="dark"
-    ) -> "Page":
-        """A new page with a profile of its own, at an address if one is given."""
+    ) -> Iterator["Page"]:
+        """A new page with a profile of its own, at an address if one is given; closed with the block."""
         features = {name.replace("_", "-"): value for name, value in media.items()}
         width, height = size
         number = self.ask("open", width=width, height=height, before=before, touch=touch, media=features)
         page = Page(self, number)
-        if url is not None:
-            page.do("goto", url=url)
-        return page
+        try:
+            if url is not None:
+                page.do("goto", url=url)
+            yield page
+        finally:
+            page.do("close")
 
     def close(self) -> None:
         assert self._process.stdin is not None
@@ -103,6 +108,3 @@ class Page:
     def reported(self) -> dict[str, list[str]]:
         """What the page wrote to its console, what it raised and what it asked for: console, errors, requests."""
         return dict(self.do("reported"))
-
-    def close(self) -> None:
-        self.do("close")

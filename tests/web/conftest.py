@@ -3,9 +3,9 @@
 from collections.abc import Iterator
 from contextlib import ExitStack
 from pathlib import Path
-from threading import Thread
 
 import pytest
+from servers import answering
 from web.browser import Browser, Page, Serve, lacking
 
 from mua.share.server import address, serving
@@ -37,10 +37,7 @@ def serve() -> Iterator[Serve]:
 
         def begin(site: Site) -> str:
             server = stack.enter_context(serving(site))
-            thread = Thread(target=server.serve_forever, args=(0.02,))
-            thread.start()
-            stack.callback(thread.join)
-            stack.callback(server.shutdown)
+            stack.enter_context(answering(server))
             return address(server)
 
         yield begin
@@ -49,8 +46,7 @@ def serve() -> Iterator[Serve]:
 @pytest.fixture
 def page(browser: Browser, serve: Serve) -> Iterator[Page]:
     """A page with an empty element; at the end nothing was raised in it."""
-    opened = browser.page(serve({**player_files(), "index.html": PLAIN}), size=(160, 200))
-    opened.wait("Boolean(customElements.get('mua-avatar'))")
-    yield opened
-    assert opened.reported["errors"] == []
-    opened.close()
+    with browser.page(serve({**player_files(), "index.html": PLAIN}), size=(160, 200)) as opened:
+        opened.wait("Boolean(customElements.get('mua-avatar'))")
+        yield opened
+        assert opened.reported["errors"] == []

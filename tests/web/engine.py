@@ -4,6 +4,7 @@ import base64
 import io
 import json
 from collections.abc import Callable, Iterator
+from contextlib import ExitStack
 from dataclasses import asdict
 from pathlib import Path
 
@@ -51,21 +52,23 @@ Open = Callable[..., Page]
 @pytest.fixture
 def opened(browser: Browser, serve: Serve) -> Iterator[Open]:
     """A page with a player, and files beside it by name; at its end nothing is left in its console."""
-    pages: list[Page] = []
+    with ExitStack() as stack:
 
-    def open_page(*, before: str = "", **files: bytes) -> Page:
-        named = {f"{name}.muaavatar": content for name, content in files.items()}
-        page = browser.page(serve({**player_files(), **named, "index.html": PAGE}), before=before)
-        pages.append(page)
-        page.evaluate(START)
-        return page
+        def begin(*, before: str = "", **files: bytes) -> Page:
+            named = {f"{name}.muaavatar": content for name, content in files.items()}
+            address = serve({**player_files(), **named, "index.html": PAGE})
+            page = stack.enter_context(browser.page(address, before=before))
+            stack.callback(lambda: _explained(page))
+            page.evaluate(START)
+            return page
 
-    yield open_page
-    for page in pages:
-        reported = page.reported
-        assert [line for line in reported["console"] if "404" not in line] == []
-        assert reported["errors"] == []
-        page.close()
+        yield begin
+
+
+def _explained(page: Page) -> None:
+    reported = page.reported
+    assert [line for line in reported["console"] if "404" not in line] == []
+    assert reported["errors"] == []
 
 
 def load(page: Page, source: str = '"a.muaavatar"') -> str:

@@ -4,9 +4,10 @@ import gzip
 from collections.abc import Iterator
 from dataclasses import dataclass
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
-from threading import Event, Thread
+from threading import Event
 
 import pytest
+from servers import answering
 from synthetic_avatar import synthetic_avatar
 from web.browser import Page
 from web.pages import ELEMENT, SENTENCE
@@ -73,13 +74,9 @@ def breaking(content: bytes) -> Iterator[Breaking]:
         def log_message(self, format: str, *arguments: object) -> None:
             """Say nothing."""
 
-    with ThreadingHTTPServer(("127.0.0.1", 0), Handler) as server:
-        thread = Thread(target=server.serve_forever, args=(0.02,))
-        thread.start()
+    with ThreadingHTTPServer(("127.0.0.1", 0), Handler) as server, answering(server):
         yield Breaking(f"http://127.0.0.1:{server.server_port}/a.muaavatar", asked, answers, firsts, arrived)
         arrived.set()
-        server.shutdown()
-        thread.join()
 
 
 def load(page: Page, breaking: Breaking, *answers: Answer, until: str) -> None:

@@ -149,17 +149,16 @@ def test_an_element_that_changes_before_its_first_picture_shows_one(
     browser: Browser, serve: Serve, small: Path, change: str, after: int
 ) -> None:
     site: Site = {**player_files(), "index.html": PLAIN, "a.muaavatar": small.read_bytes()}
-    page = browser.page(serve(site), size=(160, 200))
-    page.wait("Boolean(customElements.get('mua-avatar'))")
-    page.evaluate(f"""globalThis.element = document.querySelector("mua-avatar"), globalThis.reported = [];
-      for (const kind of ["load", "error"])
-        element.addEventListener(kind, ({{ detail }}) => reported.push(detail.message ?? kind));
-      element.setAttribute("src", "a.muaavatar");
-      setTimeout(() => ({change}, reported.length = 0), {after});""")
-    page.wait("reported.length > 0 && element.firstPicture > 0")
-    assert page.evaluate("[reported, element.avatars.length]") == [["load"], 1]
-    assert page.reported["errors"] == []
-    page.close()
+    with browser.page(serve(site), size=(160, 200)) as page:
+        page.wait("Boolean(customElements.get('mua-avatar'))")
+        page.evaluate(f"""globalThis.element = document.querySelector("mua-avatar"), globalThis.reported = [];
+          for (const kind of ["load", "error"])
+            element.addEventListener(kind, ({{ detail }}) => reported.push(detail.message ?? kind));
+          element.setAttribute("src", "a.muaavatar");
+          setTimeout(() => ({change}, reported.length = 0), {after});""")
+        page.wait("reported.length > 0 && element.firstPicture > 0")
+        assert page.evaluate("[reported, element.avatars.length]") == [["load"], 1]
+        assert page.reported["errors"] == []
 
 
 BESIDE = """(async () => { const beside = document.createElement("mua-avatar");
@@ -178,12 +177,11 @@ REMEMBERED = """(() => { const { binders, losing } = first.player.renderer.devic
 def one_of_two(browser: Browser, serve: Serve, small: Path) -> Iterator[Page]:
     """A page that shows an element, `first`; BESIDE adds another one."""
     site: Site = {**player_files(), "index.html": b"<!doctype html>", "a.muaavatar": small.read_bytes()}
-    page = browser.page(serve(site), size=(160, 400), before=COUNTED + LOSABLE)
-    page.evaluate("import('./element.js').then(() => 0)")
-    page.evaluate(f"{BESIDE}.then((it) => (globalThis.first = it, first.player.renderer.compile())).then(() => 0)")
-    yield page
-    assert page.reported["errors"] == []
-    page.close()
+    with browser.page(serve(site), size=(160, 400), before=COUNTED + LOSABLE) as page:
+        page.evaluate("import('./element.js').then(() => 0)")
+        page.evaluate(f"{BESIDE}.then((it) => (globalThis.first = it, first.player.renderer.compile())).then(() => 0)")
+        yield page
+        assert page.reported["errors"] == []
 
 
 def test_a_second_element_uses_the_device_of_the_first_and_compiles_nothing(one_of_two: Page) -> None:

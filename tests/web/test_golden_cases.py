@@ -4,7 +4,6 @@ import base64
 import sys
 from collections.abc import Iterator
 from pathlib import Path
-from threading import Thread
 
 import numpy as np
 import pytest
@@ -15,6 +14,7 @@ from mua.share.site import player_files
 
 sys.path.append(str(Path(__file__).parents[1] / "parity"))
 from golden import FOLDER, Golden, read_golden
+from servers import answering
 from test_golden import assert_met
 
 ALL = read_golden()
@@ -25,13 +25,13 @@ SCRIPT = Path(__file__).with_name("golden.js")
 def page(browser: Browser) -> Iterator[Page]:
     cases = {f"golden/{path.name}": path for path in FOLDER.glob("*.*")}
     page_file = b'<!doctype html><script type="module" src="golden.js"></script>'
-    with serving({**player_files(), **cases, "golden.js": SCRIPT, "index.html": page_file}) as server:
-        Thread(target=server.serve_forever, args=(0.02,)).start()
-        opened = browser.page(address(server))
+    with (
+        serving({**player_files(), **cases, "golden.js": SCRIPT, "index.html": page_file}) as server,
+        answering(server),
+        browser.page(address(server)) as opened,
+    ):
         opened.wait("globalThis.replay !== undefined")
         yield opened
-        opened.close()
-        server.shutdown()
 
 
 @pytest.mark.parametrize("golden", ALL, ids=str)

@@ -22,8 +22,7 @@ def opened(browser: Browser, serve: Serve) -> Iterator[Open]:
         def begin(
             attributes: dict[str, str] | None = None, *, files: Any = None, until: str = LOADED, **how: Any
         ) -> Page:
-            page = browser.page(serve(fake_site(attributes, **(files or {}))), **how)
-            stack.callback(page.close)
+            page = stack.enter_context(browser.page(serve(fake_site(attributes, **(files or {}))), **how))
             stack.callback(lambda: _all_explained(page))
             page.wait(until)
             page.evaluate(SETTLED)
@@ -361,11 +360,10 @@ def test_the_page_asks_for_nothing_but_its_own_folder(opened: Open) -> None:
 
 
 def test_the_page_may_not_ask_for_anything_else(browser: Browser, serve: Serve) -> None:
-    page = browser.page(serve(fake_site()))
-    elsewhere = serve({"x.js": b"globalThis.foreign = true"})
-    reported = "addEventListener('securitypolicyviolation', (event) => done(event.effectiveDirective))"
-    for code in (f"fetch('{elsewhere}x.js').catch(() => {{}})", f"import('{elsewhere}x.js').catch(() => {{}})"):
-        directive = page.evaluate(f"new Promise((done) => {{ {reported}; {code}; }})")
-        assert directive in ("connect-src", "script-src-elem")
-    assert page.evaluate("globalThis.foreign ?? null") is None
-    page.close()
+    with browser.page(serve(fake_site())) as page:
+        elsewhere = serve({"x.js": b"globalThis.foreign = true"})
+        reported = "addEventListener('securitypolicyviolation', (event) => done(event.effectiveDirective))"
+        for code in (f"fetch('{elsewhere}x.js').catch(() => {{}})", f"import('{elsewhere}x.js').catch(() => {{}})"):
+            directive = page.evaluate(f"new Promise((done) => {{ {reported}; {code}; }})")
+            assert directive in ("connect-src", "script-src-elem")
+        assert page.evaluate("globalThis.foreign ?? null") is None

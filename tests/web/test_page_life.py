@@ -121,6 +121,15 @@ def test_a_paused_element_of_another_size_is_drawn_again(opened: Open) -> None:
     page.wait(f"fake.drawn > {drawn}")
 
 
+def test_a_figure_stays_in_view_in_another_shape_until_the_reader_comes_nearer(opened: Open) -> None:
+    page = opened()
+    for width, nearer in (300, False), (200, True):
+        page.evaluate(f"(globalThis.before = fake.framed, {nearer:d} && {ELEMENT}.zoom(1), 0)")
+        page.evaluate(f"({ELEMENT}.style.width = '{width}px', 0)")
+        page.wait(f"{SIZES}[0] === {width}")
+        assert page.evaluate("fake.framed > before") is not nearer
+
+
 def test_attributes_count_after_it_is_loaded_and_leave_the_others(opened: Open) -> None:
     page = opened({"src": "hero.muaavatar", "speed": "0.5"})
     page.evaluate(f"{ELEMENT}.setAttribute('clip', 'wave')")

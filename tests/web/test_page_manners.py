@@ -154,24 +154,22 @@ def test_a_page_with_the_policy_of_the_guide_plays_and_shows_its_poster(browser:
     html = f"""<!doctype html><meta http-equiv="Content-Security-Policy" content="{policy}">
       <mua-avatar src="hero.muaavatar" poster="icon.svg" controls></mua-avatar>
       <script type="module" src="element.js"></script>"""
-    page = browser.page(serve({**fake_site(), "own.html": html.encode()}) + "own.html", before=HOLD)
-    page.wait(f"{part('.poster')}?.naturalWidth > 0")
-    page.evaluate("go()")
-    page.wait(LOADED)
-    assert [line for line in page.reported["console"] if "Content Security Policy" in line] == []
-    page.close()
+    with browser.page(serve({**fake_site(), "own.html": html.encode()}) + "own.html", before=HOLD) as page:
+        page.wait(f"{part('.poster')}?.naturalWidth > 0")
+        page.evaluate("go()")
+        page.wait(LOADED)
+        assert [line for line in page.reported["console"] if "Content Security Policy" in line] == []
 
 
 def test_a_page_that_is_opened_from_the_disk_says_what_to_do(browser: Browser, tmp_path: Path) -> None:
     write_folder(tmp_path / "hero", fake_site())
-    page = browser.page((tmp_path / "hero" / "index.html").as_uri())
-    stuck = "document.querySelector('#stuck')"
-    page.wait(f"{stuck} && {stuck}.checkVisibility({{ visibilityProperty: true }})")
-    said = page.evaluate(f"{stuck}.innerText")
-    assert "python3 -m http.server" in said
-    assert "--single-file" in said
-    assert page.evaluate("document.querySelector('#open').disabled")
-    page.close()
+    with browser.page((tmp_path / "hero" / "index.html").as_uri()) as page:
+        stuck = "document.querySelector('#stuck')"
+        page.wait(f"{stuck} && {stuck}.checkVisibility({{ visibilityProperty: true }})")
+        said = page.evaluate(f"{stuck}.innerText")
+        assert "python3 -m http.server" in said
+        assert "--single-file" in said
+        assert page.evaluate("document.querySelector('#open').disabled")
 
 
 def test_a_page_that_plays_says_nothing_of_the_disk(opened: Open) -> None:

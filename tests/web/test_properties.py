@@ -38,21 +38,24 @@ WANTED = ["wave", 0.5, True, False, 384, 5000, 11.1, True, True]
 
 @pytest.mark.parametrize("known", [False, True], ids=["before the module", "after it"])
 def test_properties_that_are_set_before_an_avatar_loads_count(browser: Browser, serve: Serve, known: bool) -> None:
-    page = browser.page(serve({**fake_site(), "bare.html": BARE}) + "bare.html")
-    ask = f"(Object.assign({ELEMENT}, {json.dumps(GIVEN)}), 0)"
-    module = "import('./element.js').then(() => 0)"
-    for step in [module, ask] if known else [ask, module]:
-        page.evaluate(step)
-    page.wait(LOADED)
-    page.evaluate(SETTLED)
-    assert page.evaluate(PLAYED) == WANTED
-    assert page.evaluate("[fake.camera.azimuth, fake.camera.elevation]") == pytest.approx([1.5708, -0.5236], abs=1e-4)
-    read = f"Object.fromEntries({json.dumps(list(GIVEN))}.map((name) => [name, {ELEMENT}[name]]))"
-    assert page.evaluate(read) == GIVEN
-    assert page.evaluate(f"Object.keys({ELEMENT})") == ["firstPicture", "offersVR"], "each is a property of the class"
-    assert page.evaluate(f"[{part('.bar')}.hidden, {part('canvas')}.ariaLabel]") == [False, "A dancer"]
-    assert page.reported["errors"] == []
-    page.close()
+    with browser.page(serve({**fake_site(), "bare.html": BARE}) + "bare.html") as page:
+        ask = f"(Object.assign({ELEMENT}, {json.dumps(GIVEN)}), 0)"
+        module = "import('./element.js').then(() => 0)"
+        for step in [module, ask] if known else [ask, module]:
+            page.evaluate(step)
+        page.wait(LOADED)
+        page.evaluate(SETTLED)
+        assert page.evaluate(PLAYED) == WANTED
+        assert page.evaluate("[fake.camera.azimuth, fake.camera.elevation]") == pytest.approx(
+            [1.5708, -0.5236], abs=1e-4
+        )
+        read = f"Object.fromEntries({json.dumps(list(GIVEN))}.map((name) => [name, {ELEMENT}[name]]))"
+        assert page.evaluate(read) == GIVEN
+        assert page.evaluate(f"Object.keys({ELEMENT})") == ["firstPicture", "offersVR"], (
+            "each is a property of the class"
+        )
+        assert page.evaluate(f"[{part('.bar')}.hidden, {part('canvas')}.ariaLabel]") == [False, "A dancer"]
+        assert page.reported["errors"] == []
 
 
 def test_properties_that_are_set_while_it_loads_count(opened: Open) -> None:

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Iterator
+from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -121,22 +122,24 @@ def on_person(skeleton: Skeleton) -> bytes:
 @pytest.fixture
 def element(browser: Browser, serve: Serve) -> Iterator[Any]:
     """A page with an element, `element`, that has not loaded, and files beside it."""
-    pages: list[Page] = []
+    with ExitStack() as stack:
 
-    def begin(**files: Content) -> Page:
-        named = {name.replace("_", "."): content for name, content in files.items()}
-        page = browser.page(serve({**player_files(), "index.html": PLAIN, **named}), size=(160, 200))
-        pages.append(page)
-        page.wait("Boolean(customElements.get('mua-avatar'))")
-        page.evaluate("""(globalThis.element = document.querySelector("mua-avatar"), globalThis.told = [],
-          ["play", "pause", "loop", "end", "load", "error"].forEach((kind) => element.addEventListener(kind,
-            ({ type, detail }) => told.push(type === "error" ? detail.message : type))), 0)""")
-        return page
+        def begin(**files: Content) -> Page:
+            named = {name.replace("_", "."): content for name, content in files.items()}
+            address = serve({**player_files(), "index.html": PLAIN, **named})
+            page = stack.enter_context(browser.page(address, size=(160, 200)))
+            stack.callback(lambda: nothing_raised(page))
+            page.wait("Boolean(customElements.get('mua-avatar'))")
+            page.evaluate("""(globalThis.element = document.querySelector("mua-avatar"), globalThis.told = [],
+              ["play", "pause", "loop", "end", "load", "error"].forEach((kind) => element.addEventListener(kind,
+                ({ type, detail }) => told.push(type === "error" ? detail.message : type))), 0)""")
+            return page
 
-    yield begin
-    for page in pages:
-        assert page.reported["errors"] == []
-        page.close()
+        yield begin
+
+
+def nothing_raised(page: Page) -> None:
+    assert page.reported["errors"] == []
 
 
 def clip_of(page: Page, skeleton: Skeleton) -> tuple[Array, Array]:

@@ -7,12 +7,12 @@ from contextlib import ExitStack
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from io import BytesIO
 from pathlib import Path
-from threading import Thread
 from typing import Any
 
 import numpy as np
 import pytest
 from PIL import Image
+from servers import answering
 from web.browser import Browser, Page, Serve
 from web.pages import ELEMENT, LOSABLE, SENTENCE, SHADOW
 
@@ -42,8 +42,7 @@ def opened(browser: Browser, serve: Serve) -> Iterator[Open]:
     with ExitStack() as stack:
 
         def begin(site: dict[str, Content], *, until: str = DRAWN, **how: Any) -> Page:
-            page = browser.page(serve(site), size=(320, 400), **how)
-            stack.callback(page.close)
+            page = stack.enter_context(browser.page(serve(site), size=(320, 400), **how))
             stack.callback(lambda: _explained(page))
             page.wait(until)
             return page
@@ -117,13 +116,12 @@ def test_the_picture_shows_the_figure_and_the_page_behind_it(opened: Open, folde
 
 def test_a_single_file_plays_from_the_disk(browser: Browser, avatar_file: Path, tmp_path: Path) -> None:
     (tmp_path / "one.html").write_text(single_page([avatar_file], Shown("One file")), encoding="utf-8")
-    page = browser.page(f"file://{tmp_path / 'one.html'}", size=(320, 400))
-    page.wait(DRAWN)
-    reported = page.reported
-    assert (reported["console"], reported["errors"]) == ([], [])
-    assert all(url.startswith(("file:", "blob:", "data:")) for url in reported["requests"])
-    assert page.evaluate(f"{ELEMENT}.avatars.length") == 1
-    page.close()
+    with browser.page(f"file://{tmp_path / 'one.html'}", size=(320, 400)) as page:
+        page.wait(DRAWN)
+        reported = page.reported
+        assert (reported["console"], reported["errors"]) == ([], [])
+        assert all(url.startswith(("file:", "blob:", "data:")) for url in reported["requests"])
+        assert page.evaluate(f"{ELEMENT}.avatars.length") == 1
 
 
 def test_no_webgpu_is_a_sentence(opened: Open, folder: dict[str, Content]) -> None:
@@ -168,12 +166,8 @@ def elsewhere() -> Iterator[str]:
         def log_message(self, format: str, *arguments: object) -> None:
             """Say nothing."""
 
-    with ThreadingHTTPServer(("127.0.0.1", 0), Handler) as server:
-        thread = Thread(target=server.serve_forever, args=(0.02,))
-        thread.start()
+    with ThreadingHTTPServer(("127.0.0.1", 0), Handler) as server, answering(server):
         yield f"http://127.0.0.1:{server.server_port}"
-        server.shutdown()
-        thread.join()
 
 
 @pytest.mark.parametrize(

@@ -6,11 +6,12 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
-from threading import Event, Thread
+from threading import Event
 from typing import Any
 
 import numpy as np
 import pytest
+from servers import answering
 from synthetic_avatar import synthetic_avatar, with_expressions, with_surface
 from tree_edits import edited
 from unpackable import trailing
@@ -173,12 +174,9 @@ def halves() -> Iterator[tuple[Give, Event]]:
             files["/slow.muaavatar"] = first, second, length
             return f"http://127.0.0.1:{server.server_port}/slow.muaavatar"
 
-        thread = Thread(target=server.serve_forever, args=(0.02,))
-        thread.start()
-        yield give, rest
-        rest.set()
-        server.shutdown()
-        thread.join()
+        with answering(server):
+            yield give, rest
+            rest.set()
 
 
 # Counts what is not transparent in an image.

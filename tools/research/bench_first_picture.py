@@ -11,12 +11,12 @@ import time
 from contextlib import closing
 from io import BufferedIOBase
 from pathlib import Path
-from threading import Thread
 from typing import IO, Any
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path += [str(ROOT / "tests"), str(ROOT / "tests" / "fixtures")]
 
+from servers import answering  # noqa: E402
 from web.browser import Browser  # noqa: E402
 from web.pages import ELEMENT  # noqa: E402
 
@@ -74,16 +74,16 @@ def main() -> None:
 def measure(file: Path, rate: float) -> str:
     line = Line(rate)
     sharing._copy = line.copy
-    with sharing.serving(player_site([file], Shown(file.stem))) as server, closing(Browser()) as browser:
-        Thread(target=server.serve_forever, args=(0.02,), daemon=True).start()
+    site = player_site([file], Shown(file.stem))
+    with sharing.serving(site) as server, answering(server), closing(Browser()) as browser:
         before = processor_seconds(browser)
-        page = browser.page(sharing.address(server), size=SIZE, before=WATCH, prefers_reduced_motion="reduce")
-        page.wait("globalThis.seen?.picture")
-        spent = processor_seconds(browser) - before
-        page.wait("globalThis.seen.load")
-        all_spent = processor_seconds(browser) - before
-        seen: Any = page.evaluate("globalThis.seen")
-        server.shutdown()
+        address = sharing.address(server)
+        with browser.page(address, size=SIZE, before=WATCH, prefers_reduced_motion="reduce") as page:
+            page.wait("globalThis.seen?.picture")
+            spent = processor_seconds(browser) - before
+            page.wait("globalThis.seen.load")
+            all_spent = processor_seconds(browser) - before
+            seen: Any = page.evaluate("globalThis.seen")
     first, whole = seen["picture"], seen["load"]
     read = line.until(first["when"]) / 1e6
     return (

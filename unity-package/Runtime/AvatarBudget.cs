@@ -1,3 +1,4 @@
+using System.Collections.Generic;
 using UnityEngine;
 
 namespace Mua
@@ -12,7 +13,7 @@ namespace Mua
     {
         private const int Default = 300000;
 
-        private static AvatarBudget current; // the one that was enabled last
+        private static readonly List<AvatarBudget> Enabled = new List<AvatarBudget>(); // the last one counts
 
         [SerializeField, Min(0), Tooltip("Most splats of all avatars together whose level of detail is automatic.")]
         private int splats = Default;
@@ -39,22 +40,21 @@ namespace Mua
         }
 
         /// <summary>Milliseconds, or 0 where there is no limit.</summary>
-        internal static float FrameLimit => current == null ? 0 : current.milliseconds;
+        internal static float FrameLimit => Enabled.Count == 0 ? 0 : Current.milliseconds;
 
         /// <summary>Splats, or -1 where there is no budget.</summary>
-        internal static long Limit => current == null ? -1 : current.splats;
+        internal static long Limit => Enabled.Count == 0 ? -1 : Current.splats;
+
+        private static AvatarBudget Current => Enabled[Enabled.Count - 1];
 
         private void OnEnable()
         {
-            current = this;
+            Enabled.Add(this);
         }
 
         private void OnDisable()
         {
-            if (current == this)
-            {
-                current = null;
-            }
+            Enabled.Remove(this);
         }
     }
 }

@@ -103,13 +103,14 @@ namespace Mua
             {
                 return;
             }
+            string source = loader.Source; // the loader goes before the rig is bound
             try
             {
                 Continue();
             }
             catch (Exception error) // whatever it is: the user sees one sentence, and no frame tries again
             {
-                Fail(loader.Source + ": " + error.Message);
+                Fail(source + ": " + error.Message);
             }
         }
 

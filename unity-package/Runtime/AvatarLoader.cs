@@ -45,14 +45,17 @@ namespace Mua
             return loader;
         }
 
-        /// <summary>A file by its full path, or by its path in persistentDataPath or else in StreamingAssets.</summary>
+        /// <summary>
+        /// A file by its address or full path, or by its path in persistentDataPath or else in StreamingAssets. ArgumentException
+        /// or InvalidOperationException where it is none.
+        /// </summary>
         public static AvatarLoader Of(string file)
         {
             string path = Locate(file);
             var loader = new AvatarLoader(path);
             if (path.Contains("://"))
             {
-                loader.request = UnityWebRequest.Get(path);
+                loader.request = Request(path);
                 loader.request.SendWebRequest();
             }
             else
@@ -151,6 +154,18 @@ namespace Mua
             buffers = reading.Result;
             reading = null;
             return true;
+        }
+
+        private static UnityWebRequest Request(string address)
+        {
+            try
+            {
+                return UnityWebRequest.Get(address);
+            }
+            catch (FormatException error)
+            {
+                throw new InvalidOperationException(address + " is no address: " + error.Message);
+            }
         }
 
         private static AvatarBuffers Read(byte[] content)

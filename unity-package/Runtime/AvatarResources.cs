@@ -72,6 +72,11 @@ namespace Mua
             {
                 throw new InvalidOperationException("There is no graphics device, so that nothing is drawn (-nographics).");
             }
+            if (Application.platform == RuntimePlatform.WebGLPlayer)
+            {
+                throw new InvalidOperationException(
+                    "Unity's players for the web have no threads to read avatars; show them by MUA's player for browsers.");
+            }
             if (!SystemInfo.supportsComputeShaders)
             {
                 missing = "does not support compute shaders; MUA needs Vulkan, Direct3D 11 or 12, or Metal.";

@@ -35,6 +35,8 @@ def pack(
         raise InputError(f"--rounding {rounding:g}: only applies to --storage packed, not to {storage}")
     require_file(file)
     target = output or file.with_name(f"{file.stem}_{storage}{file.suffix}")
+    if target.exists() and target.samefile(file):
+        raise InputError(f"-o is {target}; that is FILE itself; give another name")
     require_writable(target)
     tree = load(file)
     if storage_of(tree) == storage:

@@ -67,6 +67,7 @@ class Receiver:
         self.address = Address(self._socket.getsockname()[1], address.host)
         self.latency = Latency()
         self._assembler, self._lock, self._open = Assembler(), Lock(), True
+        self._end, self._ended = socket.socketpair()  # closing one wakes the thread, whoever takes the packets
         self._thread = Thread(target=self._run, name="VMC", daemon=True)
         self._thread.start()
 
@@ -80,8 +81,9 @@ class Receiver:
         """Close the port; nothing comes any more."""
         if self._open:
             self._open = False
-            self._wake()
+            self._end.close()
             self._thread.join()
+            self._ended.close()
             self._socket.close()
 
     @property
@@ -107,7 +109,7 @@ class Receiver:
 
     def _run(self) -> None:
         while self._open:
-            select.select([self._socket], [], [])
+            select.select([self._socket, self._ended], [], [])
             with self._lock:
                 self._take()
 
@@ -120,9 +122,3 @@ class Receiver:
             except OSError:  # none waits, or Windows has something to say of another
                 return
             self._assembler.feed(packet, time.monotonic())
-
-    def _wake(self) -> None:
-        """Let a thread that waits for a packet see that the port is being closed."""
-        host = LOOPBACK if self.address.host in ("", "0.0.0.0") else self.address.host
-        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as own:
-            own.sendto(b"", (host, self.address.port))

@@ -51,8 +51,11 @@ def files_of(directory: Path) -> list[Path]:
     return sorted(file for file in directory.iterdir() if file.suffix.lower() in SUFFIXES)
 
 
-def require_format(path: Path) -> None:
-    """Raises InputError where a path is no file of `SUFFIXES` by name and first bytes, and no directory of them."""
+def require_format(path: Path, others: tuple[str, ...] = ()) -> None:
+    """Raises InputError where a path is no file of `SUFFIXES` by name and first bytes, and no directory of them.
+
+    `others` are suffixes that its caller reads besides.
+    """
     if path.is_dir():
         if not files_of(path):
             for file in sorted(path.iterdir()):
@@ -75,7 +78,7 @@ def require_format(path: Path) -> None:
         return
     refuse_foreign(path)
     _advise(path)
-    raise InputError(f"{path}: expected a suffix out of {', '.join(SUFFIXES)}, found {path.suffix!r}")
+    raise InputError(f"{path}: expected a suffix out of {', '.join((*others, *SUFFIXES))}, found {path.suffix!r}")
 
 
 def _advise(path: Path) -> None:
@@ -89,4 +92,4 @@ def require_face(face: Path) -> None:
     if not face.is_file():
         raise InputError(f"--face {face}: there is no such file")
     if face.suffix.lower() not in FACES:
-        require_format(face)
+        require_format(face, FACES)

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from mua.player.played_files import Source
     from mua.player.shot import Look
 
-MISSING = "a window needs a display and there is none; -o writes an image or a video instead"
+MISSING = "a window needs a display and there is none; -o writes an image or a video, --web serves a page"
 
 
 def show(source: "Source", look: "Look", *, device: str | None = None) -> None:

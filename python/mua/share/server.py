@@ -103,15 +103,14 @@ class _Handler(BaseHTTPRequestHandler):
         return unquote(urlsplit(self.path).path).removeprefix("/") or PAGE
 
     @property
-    def _hosts(self) -> list[str]:
-        """The names under which a browser on this machine asks."""
-        return [f"{name}:{self.connection.getsockname()[1]}" for name in (LOOPBACK, "localhost")]
+    def _is_of_this_machine(self) -> bool:
+        """Whether the browser asks for this machine; for another port, too, which ssh may forward to this one."""
+        return self.headers.get("Host", "").partition(":")[0] in (LOOPBACK, "localhost")
 
     def _is_for_our_page(self) -> bool:
         """Refuse a stream to all but pages of this server; where there is none, to them too."""
-        ours = self.headers.get("Host") in self._hosts
-        ours &= self.headers.get("Origin") in (None, *(f"http://{host}" for host in self._hosts))
-        if not ours or self._named not in self.streams:
+        ours = self.headers.get("Origin") in (None, f"http://{self.headers.get('Host')}")
+        if not (ours and self._is_of_this_machine and self._named in self.streams):
             self._refuse(HTTPStatus.FORBIDDEN)
             return False
         return True
@@ -132,7 +131,7 @@ class _Handler(BaseHTTPRequestHandler):
         path = self._named
         content = self.site.get(path)
         # Another site whose name leads to this address must not read what is served here.
-        if self.headers.get("Host") not in self._hosts:
+        if not self._is_of_this_machine:
             self._refuse(HTTPStatus.MISDIRECTED_REQUEST)
             return
         if content is None or (isinstance(content, Path) and not content.is_file()):

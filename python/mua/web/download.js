@@ -34,8 +34,10 @@ export function sourceOf(source) {
 }
 
 export class Download {
-  constructor(/** @type {string} */ url) {
+  /** @param {string} url @param {AbortSignal} [signal] ends it */
+  constructor(url, signal) {
     this.url = url;
+    this.signal = signal;
     this.name = nameIn(url);
     this.got = 0;
     this.since = this.last = 0; // when it began and when bytes came last, milliseconds
@@ -59,13 +61,15 @@ export class Download {
 
   /** All of it. @throws {AvatarError} where the server does not give it @returns {Promise<ArrayBuffer>} */
   async whole(/** @type {Progress} */ progress) {
-    const first = await fetch(this.url).catch(() => {
+    const first = await fetch(this.url, { signal: this.signal }).catch(() => {
+      this.signal?.throwIfAborted();
       throw this.absent("the server is out of reach, or does not allow this page to read it.");
     });
-    if (!first.ok) throw this.absent(`the server answers ${first.status} ${first.statusText}.`);
+    if (!first.ok) throw this.absent(`the server answers ${statusOf(first)}.`);
     this.begin(first);
     let there = await this.take(first, progress);
     for (let [vain, most] = [0, this.got]; !there; most = Math.max(most, this.got)) {
+      this.signal?.throwIfAborted();
       if (!this.total || vain === WAITS.length) throw this.broken();
       await new Promise((resolve) => setTimeout(resolve, WAITS[vain]));
       there = await this.resume(first, progress);
@@ -111,13 +115,12 @@ export class Download {
 
   /** Ask for what is not there yet; a server that knows no ranges sends all of it again. @param {Response} first @param {Progress} progress */
   async resume(first, progress) {
-    const answer = await fetch(this.url, { headers: { Range: `bytes=${this.got}-` }, cache: "no-store" }).catch(
-      () => null,
-    );
+    const { signal } = this;
+    const headers = { Range: `bytes=${this.got}-` };
+    const answer = await fetch(this.url, { headers, cache: "no-store", signal }).catch(() => null);
     if (!answer) return false;
     const part = answer.status === 206;
-    if (!answer.ok && answer.status !== 416)
-      throw this.broken(`; then the server answers ${answer.status} ${answer.statusText}`);
+    if (!answer.ok && answer.status !== 416) throw this.broken(`; then the server answers ${statusOf(answer)}`);
     const marked = MARKS.every((mark) => answer.headers.get(mark) === first.headers.get(mark));
     const total = Number(answer.headers.get("content-length")) + (part ? this.got : 0);
     if (!marked || !answer.ok || total !== this.total)
@@ -138,6 +141,11 @@ export class Download {
       `${this.name} was not fetched whole: the connection broke after ${megabytes(this.got)} MB${then}.`,
     );
   }
+}
+
+/** What a server answers: HTTP/2 and later have no words for it. */
+function statusOf(/** @type {Response} */ { status, statusText }) {
+  return `${status} ${statusText}`.trim();
 }
 
 /** The file's name in an address; as it is written there where it is no text in UTF-8. */

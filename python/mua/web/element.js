@@ -370,6 +370,7 @@ export class MuaAvatar extends Operated {
     );
     if (canvas.width === width && canvas.height === height) return;
     [canvas.width, canvas.height] = [width, height];
+    this.#stage.refit();
     this.#redraw();
   }
 }

@@ -19,7 +19,7 @@ export async function load(
   signal?.throwIfAborted();
   const absolute = sourceOf(source);
   const worker = startWorker();
-  if (!worker) return loadHere(absolute, progress, preview);
+  if (!worker) return loadHere(absolute, progress, preview, signal);
   try {
     return await new Promise((resolve, reject) => {
       worker.onmessage = ({ data }) => {
@@ -30,7 +30,7 @@ export async function load(
       };
       worker.onerror = (event) => {
         event.preventDefault();
-        resolve(loadHere(absolute, progress, preview)); // a page that forbids workers
+        resolve(loadHere(absolute, progress, preview, signal)); // a page that forbids workers
       };
       signal?.addEventListener("abort", () => reject(signal.reason)); // the worker ends, and its download with it
       worker.postMessage(absolute);

@@ -18,8 +18,9 @@ export async function loadHere(
   /** @type {Source} */ source,
   /** @type {Progress} */ progress,
   /** @type {Preview} */ preview = () => {},
+  /** @type {AbortSignal | undefined} */ signal = undefined,
 ) {
-  if (typeof source === "string") return loadFrom(new Download(source), progress, preview);
+  if (typeof source === "string") return loadFrom(new Download(source, signal), progress, preview);
   const content = await bytesOf(source);
   progress(FETCHED, "Reading the avatar");
   return checked(content, source instanceof File ? source.name : "");

@@ -12,6 +12,9 @@ import { offersVR } from "./webxr.js";
 
 export { AvatarError, offersVR };
 
+const NO_WEBGPU = "This browser has no WebGPU, which draws the avatar: use a recent Chrome, Edge or Safari.";
+const INSECURE = "Browsers offer WebGPU, which draws the avatar, only to pages opened by https: or from localhost.";
+
 /**
  * @typedef {object} Show what a picture shows, back to front; the names of mua-view --show
  * @property {boolean} splats
@@ -128,8 +131,7 @@ export { AvatarError, offersVR };
  * @throws {AvatarError} where the browser has no WebGPU, or no device for it
  */
 export async function createPlayer(canvas, options = {}) {
-  if (!globalThis.navigator?.gpu)
-    throw new AvatarError("This browser has no WebGPU, which draws the avatar: use a recent Chrome, Edge or Safari.");
+  if (!globalThis.navigator?.gpu) throw new AvatarError(globalThis.isSecureContext === false ? INSECURE : NO_WEBGPU);
   const { Engine } = await import("./engine.js");
   return Engine.create(canvas, options);
 }

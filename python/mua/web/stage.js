@@ -41,6 +41,16 @@ export class Stage {
     this.framed = player.camera.distance;
   }
 
+  /** Keep all in a picture of another shape, such as of a phone that was turned, unless the reader has moved nearer or away. */
+  refit() {
+    const { player, avatars } = this.avatar;
+    if (!player || !avatars.length || player.camera.distance !== this.framed) return;
+    const { target } = player.camera; // where the reader looks stays in the middle
+    player.frameAll();
+    player.camera.target = target;
+    this.framed = player.camera.distance;
+  }
+
   lookAtNext() {
     const { player, avatars } = this.avatar;
     if (!player || !avatars.length) return;

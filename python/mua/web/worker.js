@@ -1,7 +1,7 @@
 // Fetches and reads an avatar away from the page's own thread: takes a source, answers progress, previews, then the avatar,
 // whose bytes change hands without a copy, or what is wrong with it.
 
-import { AvatarError } from "./error.js";
+import { asAvatarError } from "./error.js";
 import { loadHere } from "./load_here.js";
 
 self.onmessage = async ({ data: source }) => {
@@ -13,8 +13,7 @@ self.onmessage = async ({ data: source }) => {
     );
     self.postMessage({ avatar }, { transfer: [...new Set(memories(avatar))] });
   } catch (error) {
-    if (!(error instanceof AvatarError)) throw error;
-    const { message, code, field } = error;
+    const { message, code, field } = asAvatarError(error, "The avatar cannot be read"); // for lack of memory, say
     self.postMessage({ failure: { message, code, field } });
   }
 };

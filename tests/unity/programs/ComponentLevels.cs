@@ -139,6 +139,9 @@ namespace Mua
             second.Level = AvatarLevel.Automatic;
             budget.Splats = 0;
             Say("later", Splats(first) + " " + Splats(second));
+            later.enabled = false;
+            Say("earlier", Splats(first) + " " + Splats(second));
+            later.enabled = true;
             later.Splats = 0;
             budget.enabled = false;
             Say("later", Splats(first) + " " + Splats(second));

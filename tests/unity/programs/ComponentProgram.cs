@@ -249,6 +249,12 @@ namespace Mua
             Say("held", Recorder.AliveCount + Requests.Open);
         }
 
+        private static void FailsAtAddress()
+        {
+            files[0] = "https://";
+            Fails();
+        }
+
         private static void FailsInEditor()
         {
             Machine.Playing(false);
@@ -274,6 +280,12 @@ namespace Mua
             Machine.ComputeShaders(false);
             Fails();
             Show(files[0]);
+        }
+
+        private static void LacksThreads()
+        {
+            Machine.Platform(RuntimePlatform.WebGLPlayer);
+            Fails();
         }
 
         private static void LacksBuffers()

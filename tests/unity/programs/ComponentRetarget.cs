@@ -195,5 +195,18 @@ namespace Mua
             Frames(20);
             Say("state", shown.State);
         }
+
+        /// <summary>A rig, given before the avatar is there, whose script pairs nothing with a joint.</summary>
+        private static void RefusesNothing()
+        {
+            RetargetedRig retargeted = new OtherRig().Root.gameObject.AddComponent<RetargetedRig>();
+            retargeted.Map(null, "hook");
+            AvatarRenderer shown = Begin(files[0]);
+            shown.Rig = retargeted.transform;
+            Until(shown);
+            Say("state", shown.State);
+            Say("message", shown.Message);
+            Say("held", Recorder.AliveCount);
+        }
     }
 }

@@ -66,3 +66,10 @@ test("a device is called as the browser describes it, or by its maker", () => {
     "Card",
   );
 });
+
+test("where there is no WebGPU, a page that is not secure is told that this is why", async () => {
+  const { createPlayer } = await import("../../../python/mua/web/player.js");
+  await assert.rejects(createPlayer({}), { name: "AvatarError", message: /no WebGPU/ });
+  globalThis.isSecureContext = false;
+  await assert.rejects(createPlayer({}), { name: "AvatarError", message: /only to pages opened by https/ });
+});

@@ -66,6 +66,7 @@ test("a server that fails is a sentence with its answer, at first and while the 
     message: "a.muaavatar cannot be fetched: the server answers 500 Internal Server Error.",
   });
   assert.equal(asked.length, 1);
+  await assert.rejects(fetched([404]), { message: "a.muaavatar cannot be fetched: the server answers 404." });
   await assert.rejects(fetched([200, 0, 40], [500]), /the connection broke after 0.0 MB; then the server answers 500/);
 });
 

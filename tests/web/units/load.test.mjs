@@ -120,3 +120,32 @@ test("a download that is stopped ends its worker, and says why", async () => {
   await assert.rejects(stopped(), { message: "another one" });
   assert.equal(worker.ended, 1, "none is begun afterwards");
 });
+
+test("a download in the page itself is stopped too, and nothing more is asked for", async () => {
+  globalThis.Worker = undefined;
+  const [stopping, requests] = [new AbortController(), []];
+  globalThis.fetch = async (_, { signal }) => {
+    requests.push(signal);
+    signal.throwIfAborted();
+    const body = new ReadableStream({
+      start: (stream) => signal.addEventListener("abort", () => stream.error(signal.reason)),
+    });
+    return new Response(body, { headers: { "content-length": 100 } });
+  };
+  const loads = loadApart("http://host/a.muaavatar", () => {}, undefined, stopping.signal);
+  stopping.abort(new Error("another one"));
+  await assert.rejects(loads, { message: "another one" });
+  assert.equal(requests.length, 1);
+});
+
+test("what fails in a worker for lack of memory is a sentence", async () => {
+  const get = () => {
+    throw new RangeError("Array buffer allocation failed"); // as where the page has no room for what is announced
+  };
+  globalThis.fetch = async () => ({ ok: true, headers: { get } });
+  const sent = await new Promise((resolve) => {
+    globalThis.self = { postMessage: resolve };
+    void import("../../../python/mua/web/worker.js").then(() => self.onmessage({ data: "http://host/a.muaavatar" }));
+  });
+  assert.equal(sent.failure.message, "The avatar cannot be read: Array buffer allocation failed");
+});

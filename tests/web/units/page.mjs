@@ -38,7 +38,7 @@ export function fakePlayer(...bounds) {
     framed: [],
     frameAll(chosen) {
       player.framed.push(chosen);
-      player.camera.distance = 4;
+      Object.assign(player.camera, { distance: 4, target: [0, 0.9, 0] });
     },
   };
   return player;

@@ -104,3 +104,14 @@ test("where nothing is shown, nothing moves", () => {
   stage.lookAtNext();
   assert.deepEqual(element.player.framed, []);
 });
+
+test("a picture of another shape shows all again where the reader has not moved nearer or away", () => {
+  const { stage, player } = staged({}, box(1));
+  stage.reset();
+  player.camera.target = [1, 2, 3];
+  stage.refit();
+  assert.deepEqual([player.framed.length, player.camera.target], [2, [1, 2, 3]]);
+  stage.zoom(1);
+  stage.refit();
+  assert.equal(player.framed.length, 2);
+});

@@ -25,7 +25,7 @@ namespace UnityEngine
         public static void Assert(bool condition, string message) { if (!condition) StandIns.Console.Write(LogType.Assert, message, null); }
     }
 
-    public enum RuntimePlatform { OSXEditor = 0, WindowsPlayer = 2, WindowsEditor = 7, Android = 11, LinuxPlayer = 13, LinuxEditor = 16 }
+    public enum RuntimePlatform { OSXEditor = 0, WindowsPlayer = 2, WindowsEditor = 7, Android = 11, LinuxPlayer = 13, LinuxEditor = 16, WebGLPlayer = 17 }
 
     public static class Application
     {

@@ -48,7 +48,7 @@ namespace UnityEngine.Networking
             }
         }
 
-        public static UnityWebRequest Get(string uri) { return new UnityWebRequest(uri); }
+        public static UnityWebRequest Get(string uri) { return new UnityWebRequest(uri.StartsWith(Scheme) ? uri : new Uri(uri).AbsoluteUri); }
         public UnityWebRequestAsyncOperation SendWebRequest() { return new UnityWebRequestAsyncOperation { Request = this }; }
         public void Abort() { done = true; outcome = Result.ConnectionError; error = "Request aborted"; }
         public void Dispose() { StandIns.Requests.Open -= done ? 1 : 0; } // one in progress goes on until it is aborted
