@@ -47,7 +47,8 @@ def corrected(
         points, bind = points @ upright.T, replace(bind, places=bind.places @ upright.T)
         surface = None if surface is None else surface @ upright.T
         notes.append(
-            "The character lies in its bind pose, because the file states a wrong up axis; it is turned upright."
+            "The character lies or is upside down in its bind pose, because the file states a wrong up axis; "
+            "it is turned upright."
         )
     unit, size_notes = plausible_unit(_height(points))
     correction[:3, :3] *= unit

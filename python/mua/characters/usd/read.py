@@ -10,6 +10,7 @@ from pxr import Tf, Usd, UsdGeom, UsdSkel
 
 from mua.arrays import Array
 from mua.characters.animation import Animation, bare_animation, whole_animation
+from mua.characters.clip_frames import frame_times
 from mua.characters.messages import UNHELD, Messages
 from mua.characters.usd.materials import read_look
 from mua.characters.usd.mesh import read_part, subsets
@@ -183,8 +184,10 @@ def _motions(stage: Usd.Stage, nodes: Sequence[_Nodes], *, world: Array) -> list
     per_second = stage.GetTimeCodesPerSecond()
     if (end - start) / per_second < 0.5 / RATE:
         return []
-    count = int(np.floor((end - start) / per_second * RATE + 1e-3)) + 1
-    codes = start + np.arange(count) * per_second / RATE
+    where = f"{stage.GetRootLayer().identifier}: the animation"
+    joints = sum(len(group.prims) for group in nodes)
+    seconds = frame_times(start / per_second, end / per_second, RATE, nodes=joints, where=where)
+    codes = seconds * per_second
     worlds = [_worlds(nodes, Usd.TimeCode(float(code)), at_rest=False) for code in codes]
     name = animations[0].GetPrim().GetName() if animations else "Animation"
     return [Motion(name, RATE, world @ np.array(worlds), start / per_second, read_weights(animations, codes))]
