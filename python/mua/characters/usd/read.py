@@ -11,7 +11,7 @@ from pxr import Tf, Usd, UsdGeom, UsdSkel
 from mua.arrays import Array
 from mua.characters.animation import Animation, bare_animation, whole_animation
 from mua.characters.clip_frames import frame_times
-from mua.characters.messages import UNHELD, Messages
+from mua.characters.messages import STILL, UNHELD, Messages
 from mua.characters.usd.materials import read_look
 from mua.characters.usd.mesh import read_part, subsets
 from mua.characters.usd.rigid import Movers, find_movers
@@ -88,6 +88,7 @@ def _meshes(stage: Usd.Stage, path: Path) -> Scene:
             if target.GetPrim().GetPath() in drawn:
                 skins.append(read_skin(target, bones, path))
                 held.append((drawn.pop(target.GetPrim().GetPath()), target))
+    skinned = bool(nodes)
     movers = find_movers(stage, [] if held else list(drawn.values()), first=_node_count(nodes))
     nodes.append(movers)
     for mesh in drawn.values():
@@ -98,6 +99,8 @@ def _meshes(stage: Usd.Stage, path: Path) -> Scene:
         skins.append(_rigid_skin(mesh, movers, holder))
         held.append((mesh, None))
     parts, materials = _parts(held, skins, path, messages)
+    if parts and not skinned:
+        messages.sharpen(UNHELD, STILL, beyond=len(parts))
     scene = _scene(stage, nodes, skins, name=path.stem)
     return replace(scene, parts=parts, materials=materials, notes=messages.notes())
 
