@@ -310,6 +310,32 @@ def test_inverted_masks_are_named(damaged: Capture, camera: str, named: str) -> 
     ), problem
 
 
+@pytest.mark.parametrize(
+    ("camera", "turn", "remedy"),
+    [
+        ("left", Image.Transpose.ROTATE_90, "Camera left: .* the images were turned by 90° to the right"),
+        ("*", Image.Transpose.FLIP_LEFT_RIGHT, "All cameras: .* the images were mirrored, left to right"),
+    ],
+)
+def test_images_that_lie_otherwise_are_named(
+    damaged: Capture, camera: str, turn: Image.Transpose, remedy: str
+) -> None:
+    for image in damaged.folder.glob(f"images/*/{camera}/*.png"):
+        Image.open(image).transpose(turn).save(image)
+    (problem,) = check_capture(damaged, frames=1).problems
+    assert re.search(rf"^{remedy}\.$", problem), problem
+    assert "they would by 9" in problem
+
+
+def test_intrinsics_of_images_of_another_size_are_named(small_capture: Capture) -> None:
+    front, *others = small_capture.cameras
+    larger = [replace(one.resized((2 * SIDE, 2 * SIDE)), size=one.size) for one in others]
+    capture = replace(small_capture, cameras=(front, *larger))
+    (problem,) = check_capture(capture, frames=1).problems
+    found = r"Cameras above, left, right: .* they would by 9\d% if focal and centre were divided by 2: .*"
+    assert re.fullmatch(found, problem), problem
+
+
 def test_a_camera_that_is_two_centimetres_off_is_named(small_capture: Capture) -> None:
     """The sentence says by how far; the other cameras get none."""
     front, left, *others = small_capture.cameras

@@ -9,6 +9,7 @@ from mua.capture.apart import GAIN, POOR, cameras_apart, cameras_below, missing_
 from mua.capture.capture import Capture
 from mua.capture.conventions import better_convention
 from mua.capture.fit import Posed, Seen, by_camera, mean_overlap
+from mua.capture.image_faults import image_faults, sentences
 from mua.capture.silhouette import POINTS, overlap, posed_template, rough_overlap, silhouette
 from mua.capture.tracks import PointTracks, read_tracks
 from mua.errors import InputError
@@ -29,22 +30,27 @@ def unlikely(capture: Capture, posed: Posed, views: Sequence[Seen]) -> list[str]
     inverted = _inverted(filled)
     problems += _inverted_masks(inverted, filled)
     filled = [view for view in filled if view.camera.name not in inverted]
+    faults = image_faults(posed, filled)
     if mean_overlap(filled) < POOR and filled and (found := better_convention(posed, filled)) is not None:
         convention, fitting, now = found
-        return [*problems, f"Outlines and masks overlap by {now:.0%}; they would by {fitting:.0%} if {convention}."]
+        means = {name: mean_overlap(of) for name, of in by_camera(filled).items()}
+        if fitting > np.mean([faults[name].then if name in faults else mean for name, mean in means.items()]):
+            return [*problems, f"Outlines and masks overlap by {now:.0%}; they would by {fitting:.0%} if {convention}."]
+    problems += sentences(faults, len(by_camera(filled)))
+    filled = [view for view in filled if view.camera.name not in faults]
     problems += _far(capture, posed)
-    unseen = _unseen(views)
+    unseen = [name for name in _unseen(views) if name not in faults]
     problems += [f"Camera {name} sees nobody: the posed template is outside its image." for name in unseen]
     filled = [view for view in filled if view.camera.name not in unseen]
     if shifted := list(_shifted(capture, posed, filled)):
         return problems + shifted
-    apart = [*cameras_apart(posed, filled), *missing_lens(posed, filled)]
-    if not apart and filled and mean_overlap(filled) < POOR:
-        apart = [
+    if filled and max(mean_overlap(of) for of in by_camera(filled).values()) < POOR:
+        return [
+            *problems,
             f"Outlines and masks overlap by {mean_overlap(filled):.0%}, and no other axes, units or frames that were "
-            "tried fit better: look at the image."
+            "tried fit better: look at the image.",
         ]
-    return problems + apart
+    return problems + [*cameras_apart(posed, filled), *missing_lens(posed, filled)]
 
 
 def remarks(views: Sequence[Seen], *, fits: bool) -> list[str]:
