@@ -112,7 +112,7 @@ def test_a_camera_with_the_pictures_of_another_is_named(damaged: Capture) -> Non
             own.write_bytes(other.read_bytes())
     (problem,) = everything(damaged).problems
     assert re.fullmatch(
-        r"Camera front: overlaps by .*; its images fit the calibration of camera above by 9\d%\.", problem
+        r"Camera front: .*; they would by 9\d% if they had the calibration of camera above\.", problem
     )
 
 
@@ -136,6 +136,13 @@ def test_a_mask_of_another_frame_is_named_with_the_frame(damaged: Capture) -> No
     images[0].write_bytes(images[1].read_bytes())
     (problem,) = everything(damaged).problems
     assert re.fullmatch(r"Camera left, clip walk, frame 0: overlaps by .* the mask fits frame 3 by 9\d%\.", problem)
+
+
+def test_masks_of_whole_images_are_named(damaged: Capture) -> None:
+    for image in damaged.folder.glob("images/*/left/*.png"):
+        Image.open(image).convert("RGB").convert("RGBA").save(image)
+    (problem,) = check_capture(damaged, frames=1).problems
+    assert problem.startswith("Camera left: all masks that were looked at (2) cover the whole image; expected white")
 
 
 def test_empty_masks_are_named(damaged: Capture) -> None:

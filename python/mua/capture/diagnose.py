@@ -25,8 +25,8 @@ TRIED = 6  # views that shifts are tried on
 
 def unlikely(capture: Capture, posed: Posed, views: Sequence[Seen]) -> list[str]:
     """All problems that were found; where one cause explains the others, it alone."""
-    problems = list(_empty(views))
-    filled = [view for view in views if view.mask.any()]
+    problems = [*_empty(views), *_full(views)]
+    filled = [view for view in views if view.mask.any() and not view.mask.all()]
     inverted = _inverted(filled)
     problems += _inverted_masks(inverted, filled)
     filled = [view for view in filled if view.camera.name not in inverted]
@@ -102,6 +102,15 @@ def _empty(views: Sequence[Seen]) -> Iterator[str]:
     for name, of in by_camera(views).items():
         if not any(view.mask.any() for view in of):
             yield f"Camera {name}: all masks that were looked at ({len(of)}) are empty."
+
+
+def _full(views: Sequence[Seen]) -> Iterator[str]:
+    for name, of in by_camera(views).items():
+        if all(view.mask.all() for view in of):
+            yield (
+                f"Camera {name}: all masks that were looked at ({len(of)}) cover the whole image; expected white for the "
+                "person and black elsewhere."
+            )
 
 
 def _sometimes_empty(views: Sequence[Seen]) -> Iterator[str]:

@@ -1,4 +1,4 @@
-"""Images that lie otherwise than their cameras were calibrated, and calibrations of images of another size."""
+"""Images that lie otherwise than their camera was calibrated, are of another camera, or of another size."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -9,8 +9,9 @@ import numpy as np
 
 from mua.arrays import Array
 from mua.capture.apart import POOR
+from mua.capture.camera import CaptureCamera
 from mua.capture.fit import Posed, Seen, by_camera, mean_overlap
-from mua.capture.silhouette import overlap
+from mua.capture.silhouette import overlap, rough_overlap
 
 LOOKED_AT = 3  # views of a camera that faults are tried on
 BETTER = 0.15  # of overlap, by which a mask must fit better
@@ -37,12 +38,13 @@ class ImageFault:
 def image_faults(posed: Posed, views: Sequence[Seen]) -> dict[str, ImageFault]:
     """The faults of cameras that hardly fit, by their names; those that nothing tried explains have none."""
     found = {}
+    cameras = {view.camera.name: view.camera for view in views}
     for name, of in by_camera(views).items():
         now = mean_overlap(of)
         if now >= POOR:
             continue
         some = [of[i] for i in np.unique(np.linspace(0, len(of) - 1, LOOKED_AT).astype(int))]
-        fits = {remedy: float(np.mean([fit(view) for view in some])) for remedy, fit in _remedies(posed)}
+        fits = {remedy: float(np.mean([fit(view) for view in some])) for remedy, fit in _remedies(posed, some, cameras)}
         best = max(fits, key=lambda remedy: fits[remedy])
         if fits[best] > max(POOR, now + BETTER):
             found[name] = ImageFault(best, now, fits[best])
@@ -59,12 +61,18 @@ def sentences(faults: Mapping[str, ImageFault], cameras: int) -> Iterator[str]:
         yield f"{named}: outlines and masks overlap by {now:.0%}; they would by {then:.0%} if {remedy}."
 
 
-def _remedies(posed: Posed) -> Iterator[tuple[str, _Fits]]:
+def _remedies(
+    posed: Posed, views: Sequence[Seen], cameras: Mapping[str, CaptureCamera]
+) -> Iterator[tuple[str, _Fits]]:
     for remedy, turn in TURNS.items():
         yield remedy, partial(_turned, turn=turn)
     for size in SIZES:
         for scale, words in ((size, f"multiplied by {size:g}"), (1 / size, f"divided by {size:g}")):
             yield f"focal and centre were {words}: they are of images of another size", partial(_scaled, posed, scale)
+    others = {name: one for name, one in cameras.items() if one.size == views[0].camera.size}
+    rough = {name: sum(_roughly(posed, camera, view) for view in views) for name, camera in others.items()}
+    likeliest = max(rough, key=lambda name: rough[name])
+    yield f"they had the calibration of camera {likeliest}", partial(_drawn_by, posed, others[likeliest])
 
 
 def _turned(view: Seen, *, turn: Callable[[Array], Array]) -> float:
@@ -75,4 +83,12 @@ def _turned(view: Seen, *, turn: Callable[[Array], Array]) -> float:
 def _scaled(posed: Posed, scale: float, view: Seen) -> float:
     (fx, fy), (cx, cy) = view.camera.focal, view.camera.centre
     camera = replace(view.camera, focal=(fx * scale, fy * scale), centre=(cx * scale, cy * scale))
+    return _drawn_by(posed, camera, view)
+
+
+def _drawn_by(posed: Posed, camera: CaptureCamera, view: Seen) -> float:
     return overlap(posed.covers(view.clip, view.frame, camera), view.mask)
+
+
+def _roughly(posed: Posed, camera: CaptureCamera, view: Seen) -> float:
+    return rough_overlap(posed.vertices[view.clip][view.frame], camera, view.mask)
