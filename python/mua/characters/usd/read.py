@@ -71,7 +71,8 @@ def _opened(path: Path) -> Usd.Stage:
     try:
         return Usd.Stage.Open(str(path))
     except Tf.ErrorException as broken:
-        raise InputError(f"{path}: USD cannot open the stage: {str(broken).strip().splitlines()[-1]}") from broken
+        lines = [line.rpartition(" : ")[2].strip(" '") for line in str(broken).strip().splitlines()]
+        raise InputError(f"{path}: USD cannot open the stage: {lines[0]}") from broken
 
 
 def _meshes(stage: Usd.Stage, path: Path) -> Scene:
