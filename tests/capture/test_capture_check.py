@@ -111,9 +111,7 @@ def test_a_camera_with_the_pictures_of_another_is_named(damaged: Capture) -> Non
             own, other = (damaged.files(clip, frame, name).image for name in ("front", "above"))
             own.write_bytes(other.read_bytes())
     (problem,) = everything(damaged).problems
-    assert re.fullmatch(
-        r"Camera front: .*; they would by 9\d% if they had the calibration of camera above\.", problem
-    )
+    assert re.fullmatch(r"Camera front: .*; they would by 9\d% if they had the calibration of camera above\.", problem)
 
 
 def test_a_camera_that_nothing_explains_is_named(small_capture: Capture) -> None:
@@ -324,9 +322,7 @@ def test_inverted_masks_are_named(damaged: Capture, camera: str, named: str) -> 
         ("*", Image.Transpose.FLIP_LEFT_RIGHT, "All cameras: .* the images were mirrored, left to right"),
     ],
 )
-def test_images_that_lie_otherwise_are_named(
-    damaged: Capture, camera: str, turn: Image.Transpose, remedy: str
-) -> None:
+def test_images_that_lie_otherwise_are_named(damaged: Capture, camera: str, turn: Image.Transpose, remedy: str) -> None:
     for image in damaged.folder.glob(f"images/*/{camera}/*.png"):
         Image.open(image).transpose(turn).save(image)
     (problem,) = check_capture(damaged, frames=1).problems

@@ -51,11 +51,13 @@ def test_mesh_on_no_joint_is_left_out_with_a_note(tmp_path: Path) -> None:
     assert surfaces.notes == ("Meshes that no joint moves are left out: ground.",)
 
 
-def test_weights_rounded_below_zero_and_names_that_no_file_takes_are_read(tmp_path: Path) -> None:
+def test_weights_below_zero_names_that_no_file_takes_and_empty_primitives_are_read(tmp_path: Path) -> None:
     _, weights = weighted(BONES)
     glb = body(WEIGHTS_0=None)
     put("WEIGHTS_0", weights - [0, 1e-5, 0, 0])(glb)
     glb.json["nodes"][1]["name"] = "spine \ud83d"  # half of an emoji
+    empty = glb.accessor(np.zeros((1, 1)), "u2", count=0)
+    glb.json["meshes"][0]["primitives"].append(primitive(glb) | {"indices": empty})
     surfaces = read(glb, tmp_path)
     assert_is_column(surfaces)
     assert surfaces.skeleton.names == ("hips", "spine ?", "head")

@@ -63,8 +63,10 @@ STANDS = places_of(assemble(whole(Rotation.identity()), HERE))
 
 @pytest.mark.parametrize(
     ("axis", "degrees", "stoops"),
-    [("x", 90, 0), ("x", -90, 0), ("z", 90, 0), ("z", -90, 0), ("x", 90, 80), ("z", 90, 80), ("z", -90, 80)]
-    + [("x", 180, 0), ("z", 180, 0), ("z", 180, 80)],
+    [
+        *(("x", 90, 0), ("x", -90, 0), ("z", 90, 0), ("z", -90, 0), ("x", 90, 80), ("z", 90, 80), ("z", -90, 80)),
+        *(("x", 180, 0), ("z", 180, 0), ("z", 180, 80)),
+    ],
 )
 def test_a_person_who_lies_is_made_to_stand(axis: str, degrees: float, stoops: float) -> None:
     surfaces = assemble(whole(Rotation.from_euler(axis, degrees, degrees=True), stoops=stoops), HERE)

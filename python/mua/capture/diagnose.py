@@ -50,7 +50,7 @@ def unlikely(capture: Capture, posed: Posed, views: Sequence[Seen]) -> list[str]
             f"Outlines and masks overlap by {mean_overlap(filled):.0%}, and no other axes, units or frames that were "
             "tried fit better: look at the image.",
         ]
-    return problems + [*cameras_apart(posed, filled), *missing_lens(posed, filled)]
+    return [*problems, *cameras_apart(posed, filled), *missing_lens(posed, filled)]
 
 
 def remarks(views: Sequence[Seen], *, fits: bool) -> list[str]:
@@ -108,8 +108,8 @@ def _full(views: Sequence[Seen]) -> Iterator[str]:
     for name, of in by_camera(views).items():
         if all(view.mask.all() for view in of):
             yield (
-                f"Camera {name}: all masks that were looked at ({len(of)}) cover the whole image; expected white for the "
-                "person and black elsewhere."
+                f"Camera {name}: all masks that were looked at ({len(of)}) cover the whole image; expected white for "
+                "the person and black elsewhere."
             )
 
 

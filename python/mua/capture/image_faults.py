@@ -61,9 +61,7 @@ def sentences(faults: Mapping[str, ImageFault], cameras: int) -> Iterator[str]:
         yield f"{named}: outlines and masks overlap by {now:.0%}; they would by {then:.0%} if {remedy}."
 
 
-def _remedies(
-    posed: Posed, views: Sequence[Seen], cameras: Mapping[str, CaptureCamera]
-) -> Iterator[tuple[str, _Fits]]:
+def _remedies(posed: Posed, views: Sequence[Seen], cameras: Mapping[str, CaptureCamera]) -> Iterator[tuple[str, _Fits]]:
     for remedy, turn in TURNS.items():
         yield remedy, partial(_turned, turn=turn)
     for size in SIZES:

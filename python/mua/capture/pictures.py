@@ -40,7 +40,7 @@ def read_picture(
         if isinstance(error, InputError):
             raise
         found = told_by(path.read_bytes()) if isinstance(error, UnidentifiedImageError) else ""
-        raise InputError(f"{path}: cannot be read as an image: {found and f'it is {found}' or error}") from error
+        raise InputError(f"{path}: cannot be read as an image: {f'it is {found}' if found else error}") from error
 
 
 def picture_size(path: Path, *, like: tuple[int, int] | None) -> tuple[int, int]:

@@ -171,7 +171,9 @@ def _picture(document: Document, info: dict[str, Any], where: str) -> tuple[Arra
     try:
         picture = decode_ktx2(content) if is_ktx2(content) else pictures.decode_image(content)
     except ValueError as broken:
-        raise document.error(f"{field} is not a PNG, JPEG, WebP, AVIF or KTX2 that can be decoded: {broken}") from broken
+        raise document.error(
+            f"{field} is not a PNG, JPEG, WebP, AVIF or KTX2 that can be decoded: {broken}"
+        ) from broken
     if texture.sampler is None:
         return picture, REPEAT
     sampler = document.item("samplers", texture.sampler, field=f"textures[{info['index']}].sampler")

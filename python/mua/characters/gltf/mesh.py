@@ -83,6 +83,10 @@ def read_parts(
         material = len(coordinates) - 1 if primitive.material is None else primitive.material
         if not 0 <= material < len(coordinates):
             raise document.error(f"{where}.material is {material}, but materials holds {len(coordinates) - 1} entries")
+        if primitive.indices is not None:
+            indices = document.item("accessors", primitive.indices, field=f"{where}.indices")
+            if indices.count == 0:  # a material that no triangle has any more
+                continue
         geometry = _geometry(document, primitive, where)
         faces = _triangles(geometry["indices"], mode)
         joints, weights = _influences(document, geometry, where, bones=bones)
