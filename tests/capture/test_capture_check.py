@@ -111,9 +111,7 @@ def test_a_camera_with_the_pictures_of_another_is_named(damaged: Capture) -> Non
             own, other = (damaged.files(clip, frame, name).image for name in ("front", "above"))
             own.write_bytes(other.read_bytes())
     (problem,) = everything(damaged).problems
-    assert re.fullmatch(
-        r"Camera front: overlaps by .*; its images fit the calibration of camera above by 9\d%\.", problem
-    )
+    assert re.fullmatch(r"Camera front: .*; they would by 9\d% if they had the calibration of camera above\.", problem)
 
 
 def test_a_camera_that_nothing_explains_is_named(small_capture: Capture) -> None:
@@ -136,6 +134,13 @@ def test_a_mask_of_another_frame_is_named_with_the_frame(damaged: Capture) -> No
     images[0].write_bytes(images[1].read_bytes())
     (problem,) = everything(damaged).problems
     assert re.fullmatch(r"Camera left, clip walk, frame 0: overlaps by .* the mask fits frame 3 by 9\d%\.", problem)
+
+
+def test_masks_of_whole_images_are_named(damaged: Capture) -> None:
+    for image in damaged.folder.glob("images/*/left/*.png"):
+        Image.open(image).convert("RGB").convert("RGBA").save(image)
+    (problem,) = check_capture(damaged, frames=1).problems
+    assert problem.startswith("Camera left: all masks that were looked at (2) cover the whole image; expected white")
 
 
 def test_empty_masks_are_named(damaged: Capture) -> None:
@@ -308,6 +313,30 @@ def test_inverted_masks_are_named(damaged: Capture, camera: str, named: str) -> 
     assert re.fullmatch(
         rf"{named}: masks are inverted, by 9\d% they fit what is black; expected white .*\.", problem
     ), problem
+
+
+@pytest.mark.parametrize(
+    ("camera", "turn", "remedy"),
+    [
+        ("left", Image.Transpose.ROTATE_90, "Camera left: .* the images were turned by 90° to the right"),
+        ("*", Image.Transpose.FLIP_LEFT_RIGHT, "All cameras: .* the images were mirrored, left to right"),
+    ],
+)
+def test_images_that_lie_otherwise_are_named(damaged: Capture, camera: str, turn: Image.Transpose, remedy: str) -> None:
+    for image in damaged.folder.glob(f"images/*/{camera}/*.png"):
+        Image.open(image).transpose(turn).save(image)
+    (problem,) = check_capture(damaged, frames=1).problems
+    assert re.search(rf"^{remedy}\.$", problem), problem
+    assert "they would by 9" in problem
+
+
+def test_intrinsics_of_images_of_another_size_are_named(small_capture: Capture) -> None:
+    front, *others = small_capture.cameras
+    larger = [replace(one.resized((2 * SIDE, 2 * SIDE)), size=one.size) for one in others]
+    capture = replace(small_capture, cameras=(front, *larger))
+    (problem,) = check_capture(capture, frames=1).problems
+    found = r"Cameras above, left, right: .* they would by 9\d% if focal and centre were divided by 2: .*"
+    assert re.fullmatch(found, problem), problem
 
 
 def test_a_camera_that_is_two_centimetres_off_is_named(small_capture: Capture) -> None:

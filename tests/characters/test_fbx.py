@@ -374,8 +374,9 @@ def test_vertex_colours_are_multiplied_in(tmp_path: Path) -> None:
     bones = skeleton(fbx)
     corners = TRIANGLES.size
     red = np.tile((1.0, 0.5, 0.0, 0.0), (corners, 1))
-    colors = layer("Color", "ByPolygonVertex", Colors=red.ravel(), ColorIndex=np.arange(corners, dtype=np.int32))
+    numbers = np.append(red, np.full((1, 4), np.nan))  # what no corner has is of no account
+    colors = layer("Color", "ByPolygonVertex", Colors=numbers, ColorIndex=np.arange(corners, dtype=np.int32))
     fbx.skin(fbx.mesh(fbx.model("body", "Mesh"), POINTS, colors), bones, binds(fbx), weights=np.eye(3)[fbx_files.BONES])
-    read = read_surfaces(fbx.save(tmp_path / "body.fbx"))
+    read = read_surfaces(fbx.save(tmp_path / "body.fbx", binary=True))
     assert read.corner_colors is not None
     np.testing.assert_allclose(read.corner_colors, np.broadcast_to((1, 0.2140, 0, 1), (*TRIANGLES.shape, 4)), atol=1e-3)

@@ -128,10 +128,12 @@ def test_motion_of_a_file_that_shows_a_face_alone_has_all_limbs(tmp_path: Path) 
     np.testing.assert_allclose(np.abs(turned[15, arm] @ [np.cos(0.75 * np.pi), 0, 0, np.sin(0.75 * np.pi)]), 1)
 
 
-def test_step_holds_and_cubic_passes_its_keys() -> None:
+def test_step_holds_keys_of_one_time_jump_and_cubic_passes_its_keys() -> None:
     times, keys = np.array([0.0, 1.0, 3.0]), np.array([[0.0], [1.0], [5.0]])
     at = np.array([-1, 0, 0.99, 1, 2.5, 3, 9])
     np.testing.assert_array_equal(KeyTrack(times, keys, "STEP").at(at)[:, 0], [0, 0, 0, 1, 1, 5, 5])
+    jump = KeyTrack(np.array([0.0, 1.0, 1.0, 2.0, 2.0]), np.array([[0.0], [1.0], [5.0], [6.0], [9.0]]), "LINEAR")
+    np.testing.assert_array_equal(jump.at(np.array([0.5, 1, 1.5, 2, 3]))[:, 0], [0.5, 5, 5.5, 9, 9])
     slopes = np.gradient(times**2, times, edge_order=2)  # a parabola, which cubic segments hold exactly
     cubic = np.stack([slopes, times**2, slopes], axis=1).reshape(-1, 1)
     inside = np.linspace(0, 3, 13)

@@ -20,6 +20,15 @@ def test_reads_json_with_buffer_beside_it(tmp_path: Path) -> None:
     assert_is_column(read_surfaces(tmp_path / "body.gltf"))
 
 
+def test_a_buffer_that_was_not_fetched_is_named(tmp_path: Path) -> None:
+    glb = body()
+    glb.json["buffers"] = [{"byteLength": len(glb.blob), "uri": "body.bin"}]
+    (tmp_path / "body.bin").write_bytes(b"version https://git-lfs.github.com/spec/v1\n")
+    (tmp_path / "body.gltf").write_text(json.dumps(glb.json))
+    with pytest.raises(InputError, match="but 43 bytes are there, a Git LFS pointer; fetch the file"):
+        read_surfaces(tmp_path / "body.gltf")
+
+
 def test_reads_buffer_in_a_data_uri(tmp_path: Path) -> None:
     glb = body()
     uri = "data:application/octet-stream;base64," + base64.b64encode(glb.blob).decode()

@@ -20,6 +20,7 @@ from gltf_files import (
 )
 from gltf_files import POINTS as COLUMN
 
+from mua.characters.messages import LOOKS_WRONG, STILL, is_about
 from mua.characters.read import read_surfaces
 from mua.errors import InputError
 
@@ -74,6 +75,17 @@ def test_robot_of_rigid_parts_is_a_character(tmp_path: Path) -> None:
     # the arm has turned by 90 degrees to -X, and the hand by another 90 downwards
     reach = half[hand].mean(axis=0) - [0.5, 1, 0]
     np.testing.assert_allclose(reach, [-0.3, -0.15, 0], atol=FLOAT_BOUND)
+
+
+def test_a_check_says_first_that_most_meshes_stand_still(tmp_path: Path) -> None:
+    glb = Glb()
+    glb.json |= {"nodes": [], "scenes": [{"nodes": []}]}
+    turn(glb, block(glb, "halo", at=(0, 2, 0), parent=None))
+    for name in ("statue", "base"):
+        block(glb, name, at=(0, 0, 0), parent=None)
+    notes = read(glb, tmp_path).notes
+    assert [note.rpartition(": ")[2] for note in notes if is_about(note, STILL)] == ["statue, base."]
+    assert STILL in LOOKS_WRONG
 
 
 @pytest.mark.parametrize("on_a_mesh", [True, False])

@@ -56,13 +56,14 @@ def test_a_factor_doubles_light_and_opacity_at_most_to_the_whole() -> None:
     np.testing.assert_array_equal(pictures.tinted(grey, np.ones(4)), grey)
 
 
-def test_reads_webp_textures(tmp_path: Path) -> None:
-    glb = textured(PICTURE, kind="webp", alphaMode="BLEND")
-    glb.json["textures"] = [{"extensions": {"EXT_texture_webp": {"source": 0}}}]
-    glb.json["extensionsRequired"] = ["EXT_texture_webp"]
+@pytest.mark.parametrize(("kind", "bound"), [("webp", 0), ("avif", 40)])  # AVIF is lossy
+def test_reads_pictures_that_an_extension_names(kind: str, bound: int, tmp_path: Path) -> None:
+    glb = textured(PICTURE, kind=kind, alphaMode="BLEND")
+    glb.json["textures"] = [{"extensions": {f"EXT_texture_{kind}": {"source": 0}}}]
+    glb.json["extensionsRequired"] = [f"EXT_texture_{kind}"]
     (material,) = read(glb, tmp_path).materials
     visible = PICTURE[..., 3] > 0
-    np.testing.assert_array_equal(material.image[visible], PICTURE[visible])
+    np.testing.assert_allclose(material.image[visible].astype(int), PICTURE[visible], atol=bound)
 
 
 def test_reads_texture_beside_the_file(tmp_path: Path) -> None:
@@ -91,10 +92,18 @@ def test_texture_transform_scales_turns_and_moves(tmp_path: Path) -> None:
     np.testing.assert_allclose(surfaces.uv[surfaces.uv_faces], np.stack([3 * v + 0.1, -2 * u + 0.2], -1), atol=1e-6)
 
 
-def test_texture_that_is_no_image_is_named(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("content", "found"),
+    [
+        (b"picture", "no known kind of picture"),
+        (b"<!DOCTYPE html><html>", "an HTML page; it was probably saved"),
+        (b"version https://git-lfs.github.com/spec/v1\n", "a Git LFS pointer; fetch the file"),
+    ],
+)
+def test_texture_that_is_no_image_is_named(content: bytes, found: str, tmp_path: Path) -> None:
     glb = textured(PICTURE)
-    glb.json["images"][0]["bufferView"] = 0
-    with pytest.raises(InputError, match=r"images\[0\] is not a PNG.*: its content is no known kind of picture"):
+    glb.json["images"][0]["bufferView"] = glb.view(content)
+    with pytest.raises(InputError, match=rf"images\[0\] is not a PNG.*: its content is {found}"):
         read(glb, tmp_path)
 
 
@@ -203,7 +212,7 @@ def test_a_png_goes_before_the_ktx2_beside_it(tmp_path: Path) -> None:
 def test_broken_ktx2_pictures_are_named(tmp_path: Path) -> None:
     content = ktx2(COLORS)
     for broken in (content[:100], content[:-16], content[:12] + bytes(36) + content[48:]):
-        with pytest.raises(InputError, match=r"images\[1\] is not a PNG, JPEG, WebP or KTX2 that can be decoded"):
+        with pytest.raises(InputError, match=r"images\[1\] is not a PNG, JPEG, WebP, AVIF or KTX2 that can be decoded"):
             read(with_ktx2(broken), tmp_path)
 
 

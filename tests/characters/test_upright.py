@@ -63,7 +63,10 @@ STANDS = places_of(assemble(whole(Rotation.identity()), HERE))
 
 @pytest.mark.parametrize(
     ("axis", "degrees", "stoops"),
-    [("x", 90, 0), ("x", -90, 0), ("z", 90, 0), ("z", -90, 0), ("x", 90, 80), ("z", 90, 80), ("z", -90, 80)],
+    [
+        *(("x", 90, 0), ("x", -90, 0), ("z", 90, 0), ("z", -90, 0), ("x", 90, 80), ("z", 90, 80), ("z", -90, 80)),
+        *(("x", 180, 0), ("z", 180, 0), ("z", 180, 80)),
+    ],
 )
 def test_a_person_who_lies_is_made_to_stand(axis: str, degrees: float, stoops: float) -> None:
     surfaces = assemble(whole(Rotation.from_euler(axis, degrees, degrees=True), stoops=stoops), HERE)
@@ -94,3 +97,11 @@ def test_who_stands_sits_leans_or_goes_on_four_legs_is_not_turned(scene: Scene) 
 def test_who_lies_in_motion_without_a_mesh_keeps_lying() -> None:
     lying = whole(Rotation.from_euler("x", -90, degrees=True))
     assert bare_animation(replace(lying, parts=()), HERE).notes == ()
+
+
+def test_who_stands_kilometres_from_the_origin_is_moved_there() -> None:
+    far = whole(Rotation.identity())
+    surfaces = assemble(replace(far, rest=at(20_000.0, 500.0, -15_000.0) @ far.rest), HERE)
+    assert "The character stands 25 km from the origin of its file; it is moved there." in surfaces.notes
+    assert abs(surfaces.vertices).max() < 3
+    assert surfaces.vertices[:, 1].min() == pytest.approx(0, abs=1e-9)

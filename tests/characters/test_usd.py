@@ -265,8 +265,8 @@ def test_broken_stage_names_the_field(character: Path, field: str) -> None:
 
 def test_garbage_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "bad.usda"
-    path.write_text("not a stage")
-    with pytest.raises(InputError, match="cannot open"):
+    path.write_text('#usda 1.0\ndef Xform "A" {\n  double x = \n}\n')
+    with pytest.raises(InputError, match=r"cannot open the stage: .*bad\.usda:3:3: Expected }"):
         read_surfaces(path)
 
 

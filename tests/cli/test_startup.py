@@ -1,6 +1,7 @@
 """Commands answer before they load what takes seconds, and all have --version and --quiet."""
 
 import importlib.metadata
+import io
 import json
 import runpy
 import signal
@@ -11,6 +12,7 @@ import pytest
 from commands import Ended, python
 
 import mua
+from mua.cli.failure import run_command
 from mua.files import inputs
 from mua.recording import layout
 
@@ -118,6 +120,16 @@ def test_runs_as_a_module(name: str, monkeypatch: pytest.MonkeyPatch, capsys: py
         runpy.run_module(f"mua.cli.{name}", run_name="__main__")
     assert not ended.value.code
     assert mua.__version__ in capsys.readouterr().out
+
+
+def test_a_name_that_the_console_cannot_show_ends_no_command(monkeypatch: pytest.MonkeyPatch) -> None:
+    shown = io.BytesIO()
+    monkeypatch.setattr(sys, "stdout", io.TextIOWrapper(shown, "ascii", write_through=True))
+    monkeypatch.setattr(sys, "argv", ["mua-inspect"])
+    with pytest.raises(SystemExit) as ended:
+        run_command(lambda: print("Größe"))
+    assert not ended.value.code
+    assert shown.getvalue() == b"Gr\\xf6\\xdfe\n"
 
 
 def test_the_version_is_that_of_the_installation() -> None:

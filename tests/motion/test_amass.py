@@ -184,6 +184,7 @@ def test_leaves_a_person_lying_in_a_file_of_amass(tmp_path: Path) -> None:
         ({"poses": np.zeros((5, 63))}, "poses"),
         ({"poses": np.zeros((0, 156)), "trans": np.zeros((0, 3))}, "poses"),
         ({"poses": np.full((5, 156), np.nan)}, "poses"),
+        ({"poses": np.full((5, 156), 40.0)}, "poses: holds 40, expected axis angles in radians"),
         ({"poses": np.array([["a"] * 156] * 5)}, "poses"),
         ({"trans": np.zeros((4, 3))}, "trans"),
         ({"trans": np.full((5, 3), np.inf)}, "trans"),

@@ -302,6 +302,7 @@ def test_reads_headers_however_they_are_spaced(tmp_path: Path) -> None:
         ("OFFSET 1 -9 0", "OFFSET 1 -9", "OFFSET of LeftFoot"),
         ("OFFSET 1 -9 0", "OFFSET 1 nine 0", "OFFSET of LeftFoot"),
         ("OFFSET 1 -9 0", "OFFSET 1 inf 0", "OFFSET of LeftFoot"),
+        ("OFFSET 1 -9 0", "OFFSET 1 -9e99 0", r"the longest way along OFFSETs is 9e\+99, expected"),
         ("CHANNELS 1 Xrotation", "CHANNELS 2 Xrotation", "CHANNELS of Head"),
         ("CHANNELS 1 Xrotation", "CHANNELS", "CHANNELS of Head"),
         ("CHANNELS 1 Xrotation", "CHANNELS 1 Xscale", "xscale"),

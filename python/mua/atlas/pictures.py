@@ -6,6 +6,7 @@ import numpy as np
 from PIL import Image, UnidentifiedImageError
 
 from mua.arrays import Array
+from mua.files.signature import told_by
 
 STORED = np.arange(256) / 255
 LINEAR = np.where(STORED <= 0.04045, STORED / 12.92, ((STORED + 0.055) / 1.055) ** 2.4)  # of the sRGB bytes 0 to 255
@@ -15,12 +16,12 @@ FINEST = 1024  # texels along a side, beyond which no picture is made finer
 
 
 def decode_image(content: bytes) -> Array:
-    """Decode a PNG, JPEG or WebP to [h, w, 4] uint8; raises ValueError where Pillow cannot."""
+    """Decode a PNG, JPEG, WebP or AVIF to [h, w, 4] uint8; raises ValueError where Pillow cannot."""
     try:
         with Image.open(io.BytesIO(content)) as image:
             return np.asarray(in_8_bits(image).convert("RGBA"))
     except UnidentifiedImageError as unknown:  # whose text names an object in memory
-        raise ValueError("its content is no known kind of picture") from unknown
+        raise ValueError(f"its content is {told_by(content) or 'no known kind of picture'}") from unknown
     except (OSError, SyntaxError, Image.DecompressionBombError) as broken:
         raise ValueError(str(broken)) from broken
 

@@ -12,7 +12,7 @@ POOR = 0.6  # overlap below which outline and mask do not show the same thing
 OUTLIER = 0.75  # share of the median overlap below which a view or camera stands apart from others
 BELOW = 0.05  # overlap by which a camera that is worth a look lies below the others
 TRIED = 0.03  # overlap by which a camera lies below the others before causes are tried
-GAIN = 0.1  # overlap by which another frame or camera must fit a mask better
+GAIN = 0.1  # overlap by which another frame must fit a mask better
 BETTER = 0.02  # overlap by which another moment or place must make a camera fit better
 BENT = 0.006  # overlap by which another lens must fit better: it bends little where the person is
 
@@ -24,7 +24,10 @@ def cameras_apart(posed: Posed, views: Sequence[Seen]) -> Iterator[str]:
         if mean < others - TRIED and (cause := _explained(posed, of, others - BELOW)) is not None:
             yield f"Camera {name}: overlaps by {mean:.0%}, the others typically by {others:.0%}; {cause}."
         elif mean < OUTLIER * others:
-            yield _camera_apart(posed, of, views, mean, others)
+            yield (
+                f"Camera {name}: overlaps by {mean:.0%}, a camera typically by {others:.0%}; its calibration, or which "
+                "images it has, cannot be right."
+            )
         else:
             middle = float(np.median([view.overlap for view in of]))
             yield from (_view_apart(posed, view, middle) for view in of if view.overlap < OUTLIER * middle)
@@ -76,20 +79,6 @@ def _explained(posed: Posed, of: Sequence[Seen], least: float) -> str | None:
 def _moment(fit: Fit) -> str:
     frames = f"{abs(fit.change):g} frame{'s' if abs(fit.change) > 1 else ''}"
     return f"its images were numbered {frames} {'higher' if fit.change > 0 else 'lower'}"
-
-
-def _camera_apart(posed: Posed, of: Sequence[Seen], views: Sequence[Seen], mean: float, typical: float) -> str:
-    """A sentence on a camera that fits badly, with the camera whose calibration fits its images best."""
-    name, finding = of[0].camera.name, f"overlaps by {mean:.0%}, a camera typically by {typical:.0%}"
-    others = {view.camera.name: view.camera for view in views if view.camera.size == of[0].camera.size}
-    fits = {
-        other: float(np.mean([overlap(posed.covers(v.clip, v.frame, camera), v.mask) for v in of]))
-        for other, camera in others.items()
-    }
-    best = max(fits, key=lambda other: fits[other])
-    if best != name and fits[best] > max(mean + GAIN, POOR):
-        return f"Camera {name}: {finding}; its images fit the calibration of camera {best} by {fits[best]:.0%}."
-    return f"Camera {name}: {finding}; its calibration, or which images it has, cannot be right."
 
 
 def _view_apart(posed: Posed, view: Seen, middle: float) -> str:

@@ -9,6 +9,7 @@ from mua.capture.apart import GAIN, POOR, cameras_apart, cameras_below, missing_
 from mua.capture.capture import Capture
 from mua.capture.conventions import better_convention
 from mua.capture.fit import Posed, Seen, by_camera, mean_overlap
+from mua.capture.image_faults import image_faults, sentences
 from mua.capture.silhouette import POINTS, overlap, posed_template, rough_overlap, silhouette
 from mua.capture.tracks import PointTracks, read_tracks
 from mua.errors import InputError
@@ -24,27 +25,32 @@ TRIED = 6  # views that shifts are tried on
 
 def unlikely(capture: Capture, posed: Posed, views: Sequence[Seen]) -> list[str]:
     """All problems that were found; where one cause explains the others, it alone."""
-    problems = list(_empty(views))
-    filled = [view for view in views if view.mask.any()]
+    problems = [*_empty(views), *_full(views)]
+    filled = [view for view in views if view.mask.any() and not view.mask.all()]
     inverted = _inverted(filled)
     problems += _inverted_masks(inverted, filled)
     filled = [view for view in filled if view.camera.name not in inverted]
+    faults = image_faults(posed, filled)
     if mean_overlap(filled) < POOR and filled and (found := better_convention(posed, filled)) is not None:
         convention, fitting, now = found
-        return [*problems, f"Outlines and masks overlap by {now:.0%}; they would by {fitting:.0%} if {convention}."]
+        means = {name: mean_overlap(of) for name, of in by_camera(filled).items()}
+        if fitting > np.mean([faults[name].then if name in faults else mean for name, mean in means.items()]):
+            return [*problems, f"Outlines and masks overlap by {now:.0%}; they would by {fitting:.0%} if {convention}."]
+    problems += sentences(faults, len(by_camera(filled)))
+    filled = [view for view in filled if view.camera.name not in faults]
     problems += _far(capture, posed)
-    unseen = _unseen(views)
+    unseen = [name for name in _unseen(views) if name not in faults]
     problems += [f"Camera {name} sees nobody: the posed template is outside its image." for name in unseen]
     filled = [view for view in filled if view.camera.name not in unseen]
     if shifted := list(_shifted(capture, posed, filled)):
         return problems + shifted
-    apart = [*cameras_apart(posed, filled), *missing_lens(posed, filled)]
-    if not apart and filled and mean_overlap(filled) < POOR:
-        apart = [
+    if filled and max(mean_overlap(of) for of in by_camera(filled).values()) < POOR:
+        return [
+            *problems,
             f"Outlines and masks overlap by {mean_overlap(filled):.0%}, and no other axes, units or frames that were "
-            "tried fit better: look at the image."
+            "tried fit better: look at the image.",
         ]
-    return problems + apart
+    return [*problems, *cameras_apart(posed, filled), *missing_lens(posed, filled)]
 
 
 def remarks(views: Sequence[Seen], *, fits: bool) -> list[str]:
@@ -96,6 +102,15 @@ def _empty(views: Sequence[Seen]) -> Iterator[str]:
     for name, of in by_camera(views).items():
         if not any(view.mask.any() for view in of):
             yield f"Camera {name}: all masks that were looked at ({len(of)}) are empty."
+
+
+def _full(views: Sequence[Seen]) -> Iterator[str]:
+    for name, of in by_camera(views).items():
+        if all(view.mask.all() for view in of):
+            yield (
+                f"Camera {name}: all masks that were looked at ({len(of)}) cover the whole image; expected white for "
+                "the person and black elsewhere."
+            )
 
 
 def _sometimes_empty(views: Sequence[Seen]) -> Iterator[str]:

@@ -9,6 +9,7 @@ from mua.arrays import Array
 from mua.atlas.pictures import in_8_bits
 from mua.capture.video import VIDEOS, MissingImage, video_frame
 from mua.errors import InputError
+from mua.files.signature import told_by
 
 GREY, DARK = 64, 32  # differences between red, green and blue that compression makes of greys; what it makes of black
 LABELS = 32  # more parts of a body than any tool tells apart (LIP and CIHP 20, Sapiens 28)
@@ -38,7 +39,8 @@ def read_picture(
     except (UnidentifiedImageError, OSError, SyntaxError, ValueError) as error:
         if isinstance(error, InputError):
             raise
-        raise InputError(f"{path}: cannot be read as an image: {error}") from error
+        found = told_by(path.read_bytes()) if isinstance(error, UnidentifiedImageError) else ""
+        raise InputError(f"{path}: cannot be read as an image: {f'it is {found}' if found else error}") from error
 
 
 def picture_size(path: Path, *, like: tuple[int, int] | None) -> tuple[int, int]:

@@ -16,6 +16,7 @@ ODD_HEIGHTS = (0.1, 8.0)  # metres: beyond these a file's unit is taken to be an
 UNITS = (0.01, 0.001, 100.0)  # centimetres or millimetres taken for metres, metres taken for centimetres
 ADULT = 1.75  # metres: what a figure is made whose file says nothing that is possible
 FLAT = 1e-3  # of the length: what is lower than this has no height to judge
+FAR = 1000.0  # metres from the origin: single precision holds places there to 0.1 mm
 LYING = 0.2  # of its length: what a creature that creeps counts as high
 
 
@@ -47,17 +48,34 @@ def corrected(
         points, bind = points @ upright.T, replace(bind, places=bind.places @ upright.T)
         surface = None if surface is None else surface @ upright.T
         notes.append(
-            "The character lies in its bind pose, because the file states a wrong up axis; it is turned upright."
+            "The character lies or is upside down in its bind pose, because the file states a wrong up axis; "
+            "it is turned upright."
         )
     unit, size_notes = plausible_unit(_height(points))
     correction[:3, :3] *= unit
     scene, degrees, facing_notes = faced(scene, bind, facing, surface=surface)
     correction[:3, :3] = turn_about_y(degrees) @ correction[:3, :3]
     notes += [*mirroring(scene, bind), *facing_notes]
+    away = _away(scene, bind, points) * unit
+    if np.linalg.norm(away) > FAR:
+        correction[:3, 3] = -turn_about_y(degrees) @ away
+        notes.append(
+            f"The character stands {np.linalg.norm(away) / 1000:.3g} km from the origin of its file; it is moved there."
+        )
     change = Correction(unit, size_notes, tuple(notes), moved=bool((correction != np.eye(4)).any()))
     if not change.moved:
         return scene, change
     return carried(scene, correction), change
+
+
+def _away(scene: Scene, bind: Bind, points: Array) -> Array:
+    """Where [3] on the floor a figure stands; the origin where it rests, or a clip begins, far from its bind pose."""
+    place = bind.places[0]
+    root = bind.nodes[0]
+    others = [scene.rest[root, :3, 3], *(motion.worlds[0, root, :3, 3] for motion in scene.motions)]
+    apart = [np.linalg.norm(np.linalg.norm(other) - np.linalg.norm(place)) for other in others]
+    near = max(apart) < np.linalg.norm(place) / 2
+    return np.array([place[0], points[:, 1].min(), place[2]]) if near else np.zeros(3)
 
 
 def _height(points: Array) -> float:

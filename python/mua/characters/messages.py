@@ -3,6 +3,10 @@
 from collections.abc import Sequence
 
 UNHELD = "Meshes that no joint moves are left out: {}."
+STILL = (
+    "Nothing in the file is skinned, so that what moves is taken for the figure; most meshes stand still and are left "
+    "out: {}."
+)
 LOST = (
     "Textures that are neither in the file nor beside it nor in its folder textures/, so that the parts they cover are "
     "drawn in one colour (put them beside the file): {}."
@@ -19,7 +23,7 @@ STRAY = (
     "Vertices lie so far away that the figure is tiny beside them; delete them in Blender, or leave out their mesh "
     "with --leave-out: {}."
 )
-LOOKS_WRONG = (LOST, PLAIN, FIGURES, STRAY)  # what anybody should look at before a bake
+LOOKS_WRONG = (STILL, LOST, PLAIN, FIGURES, STRAY)  # what anybody should look at before a bake
 SHOWN = 8  # names that a sentence lists before it counts the rest
 
 
@@ -39,6 +43,11 @@ class Messages:
         names = self._names.setdefault(sentence, [])
         if name not in names:
             names.append(name)
+
+    def sharpen(self, sentence: str, other: str, *, beyond: int) -> None:
+        """Say `other` in place of `sentence` where that has more names than `beyond`."""
+        if len(self._names.get(sentence, ())) > beyond:
+            self._names[other] = self._names.pop(sentence)
 
     def notes(self) -> tuple[str, ...]:
         """The sentences in the order in which they came up."""

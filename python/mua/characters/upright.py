@@ -1,4 +1,4 @@
-"""Turns a person upright who lies in the bind pose because the file states a wrong up axis."""
+"""Turns a person upright who lies, or stands on the head, in the bind pose because the file states a wrong up axis."""
 
 import numpy as np
 
@@ -10,14 +10,14 @@ from mua.pose.joint_names import SIDES
 from mua.scene import Scene
 
 STRAIGHT = 45.0  # degrees between trunk and legs up to which a body is upright in itself, as no animal on four legs is
-NEAR = np.cos(np.radians(30))  # to a level axis within which it lies
+NEAR = np.cos(np.radians(30))  # to an axis within which it lies along it
 FLOOR = 0.15  # of the body's extent along an axis: what stands on the floor is not higher above its lowest joint
 ON_FOUR = 0.3  # of the trunk's length: hands and feet both this far below it carry an animal that stands
 Y = np.array([0.0, 1, 0])
 
 
 def upright_rotation(scene: Scene, bind: Bind) -> Array | None:
-    """The rotation [3, 3] that makes a lying person stand; None where nobody lies, or names do not show a person."""
+    """The rotation [3, 3] that makes a lying person stand; None where who stands, or names do not show a person."""
     found = roles_in(scene, bind)
     if _on_four_legs(found, bind.places):
         return None
@@ -25,8 +25,8 @@ def upright_rotation(scene: Scene, bind: Bind) -> Array | None:
     bound = _upright(found, bind.places)
     if bound is None:
         return None
-    axis = np.where([True, False, True], np.sign(bound), 0) * (np.abs(bound) == np.abs(bound).max())
-    lies = bound @ axis >= NEAR and _lies(found, at_rest, axis)
+    axis = np.sign(bound) * (np.abs(bound) == np.abs(bound).max())
+    lies = bound @ axis >= NEAR and axis @ Y <= 0 and _lies(found, at_rest, axis)
     return rotation.to_matrix(rotation.between(axis, Y)) if lies else None
 
 
@@ -39,10 +39,11 @@ def _lies(found: dict[str, tuple[int, ...]], places: Array, axis: Array) -> bool
 
 
 def _on_feet(found: dict[str, tuple[int, ...]], places: Array, up: Array) -> bool:
-    """Whether both feet are the lowest parts of a body, in a world where `up` [3] is."""
-    feet = [found[f"{side} foot"][0] for side in SIDES if f"{side} foot" in found]
-    heights = places[[joints[0] for joints in found.values()]] @ up
-    return len(feet) == len(SIDES) and bool(max(places[feet] @ up) - min(heights) < FLOOR * np.ptp(heights))
+    """Whether both feet, or their toes, are the lowest parts of a body, in a world where `up` [3] is."""
+    heights = {name: float(places[joints[0]] @ up) for name, joints in found.items()}
+    feet = [[heights[name] for name in (f"{side} foot", f"{side} toe") if name in heights] for side in SIDES]
+    lowest = min(heights.values())
+    return all(feet) and max(min(foot) for foot in feet) - lowest < FLOOR * (max(heights.values()) - lowest)
 
 
 def _on_four_legs(found: dict[str, tuple[int, ...]], places: Array) -> bool:

@@ -1,6 +1,7 @@
 """Ends a command on bad input: one sentence on standard error and exit status 1."""
 
 import inspect
+import io
 import sys
 from collections.abc import Callable
 from typing import NoReturn
@@ -37,6 +38,8 @@ def _prose(command: Callable[..., None]) -> str:
 
 
 def _run(app: typer.Typer) -> None:
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="backslashreplace")  # names that the console's encoding lacks
     try:
         app(prog_name=command_name())
     except InputError as error:

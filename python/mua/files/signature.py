@@ -60,6 +60,12 @@ def kind_of(head: bytes) -> str:
     return "JSON" if text.startswith((b"{", b"[")) else ""
 
 
+def told_by(content: bytes) -> str:
+    """What a file is by its first bytes and what to do about it, for a sentence; "" where that is unknown."""
+    kind = kind_of(content[:HEAD])
+    return f"{kind}; {ADVICE[kind]}" if kind in ADVICE else kind
+
+
 def require_kind(path: Path, expected: str, *, kinds: tuple[str, ...]) -> None:
     """Raise an InputError where a file is empty or is plainly something else than `kinds`, such as an HTML page.
 

@@ -84,6 +84,7 @@ USUAL_RATE = 30.0
 Z_UP_TO_Y_UP = np.array([np.sqrt(0.5), -np.sqrt(0.5), 0, 0])  # a quarter turn about X
 Y_DOWN_TO_Y_UP = np.array([0.0, 1, 0, 0])  # half a turn about X
 IDENTITY = np.array([1.0, 0, 0, 0])
+MOST_TURNED = 4 * np.pi  # radians of a component: beyond it they are degrees
 STANDS = 0.7  # of a unit along an axis: cosine of how far a trunk may lean that stands along it
 
 
@@ -151,7 +152,7 @@ def _load(path: Path) -> dict[str, Array]:
     except (OSError, ValueError, EOFError, AttributeError, TypeError, zipfile.BadZipFile, zlib.error) as error:
         raise InputError(f"{path}: cannot be read as an .npz of plain arrays: {error}") from error
     for key, array in arrays.items():
-        if not np.issubdtype(array.dtype, np.number) or not np.isfinite(array).all():
+        if not np.issubdtype(array.dtype, np.number) or np.iscomplexobj(array) or not np.isfinite(array).all():
             raise InputError(f"{path}: {key}: expected finite numbers, found others")
     if not any(key in arrays for key in (*POSE_KEYS, *SPLIT_KEYS[1])):
         for key, shape in shapes.items():
@@ -190,6 +191,8 @@ def _poses(path: Path, arrays: Mapping[str, Array]) -> Array:
             f"{path}: {key or 'body_pose'}: expected shape [1 or more, one of {sorted(widths)}], "
             f"found {list(arrays[key].shape if key else poses.shape)}"
         )
+    if (largest := np.abs(poses).max()) > MOST_TURNED:
+        raise InputError(f"{path}: {key or 'body_pose'}: holds {largest:.4g}, expected axis angles in radians")
     return poses
 
 

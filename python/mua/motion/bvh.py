@@ -22,6 +22,7 @@ from mua.pose.skeleton import Skeleton
 UNITS = (1.0, 0.01, 0.001, 0.1, 0.0254)  # metres per unit, the likeliest first
 PERSON_SPAN = (1.7, 3.2)  # metres along the bones from fingertip to toe, child to giant
 TYPICAL_SPAN = 2.35
+LONGEST = 1e6  # units: a person of 1 km in millimetres
 HELD = 1e-4  # of the span: a joint whose place in its parent changes by less keeps the mean
 SLOWEST = 5.0  # seconds between frames; more are frames per second or milliseconds in their place
 WHOLE_RATE = 1e-3  # relative: 0.033333 s means 30 frames per second
@@ -184,6 +185,8 @@ def _numbers(path: Path, field: str, words: list[str]) -> Array:
 def _assemble(path: Path, nodes: list[_Node], rate: float, values: Array, scale: float | None) -> SourceMotion:
     """Build skeleton and clip of nodes and values [F, channels] in file units."""
     span = _span(nodes)
+    if span > LONGEST or (len(nodes) > 1 and span == 0):
+        raise InputError(f"{path}: HIERARCHY: the longest way along OFFSETs is {span:g}, expected the lengths of bones")
     scale = _likely_unit(span) if scale is None else scale
     offsets = np.array([node.offset for node in nodes])
     skeleton = Skeleton(

@@ -8,6 +8,7 @@ import numpy as np
 import ufbx
 
 from mua.arrays import Array
+from mua.characters.clip_frames import frame_times
 from mua.characters.fbx.bindings import get, items
 from mua.characters.fbx.nodes import Nodes
 from mua.characters.fbx.shapes import keyed_channels, read_weights
@@ -16,7 +17,6 @@ from mua.characters.node_tree import compose
 from mua.errors import InputError
 
 RATES = (1.0, 240.0)  # frames per second; beyond these a file's rate is no rate of motion
-MOST = 10_000_000  # matrices of one stack: 100 joints for an hour at 30 frames per second, and 1.3 GB
 MOVES = 1e-4  # change of a local matrix, and of a place relative to its distance, below which a node stands still
 PLACED = ("Lcl Translation", "Lcl Rotation", "Lcl Scaling")  # properties that move a node
 
@@ -55,16 +55,11 @@ def read_takes(scene: Any, nodes: Nodes, path: Path, messages: Messages) -> list
         elif not end - start >= 0.5 / rate:
             messages.add("Clips of a single pose are left out: {}.", name)
         else:
-            count = np.floor((end - start) * rate + 1e-3) + 1
-            if not count * (len(keyed) + len(face)) <= MOST:
-                raise InputError(
-                    f"{path}: animation stack {name} lasts {end - start:g} s, which makes {count:g} frames of "
-                    f"{len(keyed)} nodes, expected at most {MOST:,} in all"
-                )
-            times = start + np.arange(int(count)) / rate
+            where = f"{path}: animation stack {name}"
+            times = frame_times(start, end, rate, nodes=len(keyed) + len(face), where=where)
             local = {node: _sampled(stack, node, nodes, times) for node in sorted(keyed)}
             if not all(np.isfinite(matrices).all() for matrices in local.values()):
-                raise InputError(f"{path}: animation stack {name} holds a number that is not finite")
+                raise InputError(f"{where} holds a number that is not finite")
             takes.append(Take(name, rate, start, len(times), local, read_weights(stack, face, times)))
     return takes
 

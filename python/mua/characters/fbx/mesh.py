@@ -74,9 +74,9 @@ def _attribute(owner: Any, name: str, corners: int, where: str) -> tuple[Array, 
     if not get(attribute, "exists"):
         return None
     values, indices = array(attribute, "values"), array(attribute, "indices").astype(int).ravel()
-    if len(indices) != corners or indices.max(initial=-1) >= len(values) or not np.isfinite(values).all():
+    if len(indices) != corners or indices.max(initial=-1) >= len(values) or not np.isfinite(values[indices]).all():
         raise InputError(f"{where}.{name} does not fit its {corners} corners")
-    return values, indices
+    return np.nan_to_num(values), indices  # values that no corner has are of any kind
 
 
 def _colors(source: Any, corners: int, where: str) -> Array | None:

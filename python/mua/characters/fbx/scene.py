@@ -17,7 +17,7 @@ from mua.characters.fbx.nodes import read_nodes
 from mua.characters.fbx.parts import by_material
 from mua.characters.fbx.skin import bones_of, read_skin, rigid_skin
 from mua.characters.holders import Holders
-from mua.characters.messages import UNHELD, Messages
+from mua.characters.messages import STILL, UNHELD, Messages
 from mua.characters.node_tree import chain
 from mua.errors import InputError
 from mua.scene import Motion, Part, Scene, Skin
@@ -82,6 +82,8 @@ class Reader:
             skin, more = self._mesh(node, holder, skin=len(skins))
             skins.append(skin)
             parts += more
+        if parts and not joints:
+            self._messages.sharpen(UNHELD, STILL, beyond=len(parts))
         return skins, parts
 
     def _is_drawn(self, node: int, *, skinned: bool) -> bool:

@@ -6,6 +6,7 @@ import numpy as np
 
 from mua import rotation
 from mua.arrays import Array
+from mua.characters.clip_frames import frame_times
 from mua.characters.gltf.document import Document
 from mua.characters.gltf.keys import KeyTrack, read_keys
 from mua.characters.gltf.vrm import NO_VRM, Vrm
@@ -56,7 +57,8 @@ def read_animations(
         if end - start < 0.5 / RATE:
             messages.add("Clips of a single pose are left out: {}.", name)
             continue
-        frames = start + np.arange(int(np.floor((end - start) * RATE + 1e-3)) + 1) / RATE
+        where = f"{document.path}: animations[{a}]"
+        frames = frame_times(start, end, RATE, nodes=len(nodes), where=where)
         local = _local(document, tracks, frames, nodes=nodes, rest=rest)
         weights: dict[str, Array] = {}
         for expression, track in faces:

@@ -18,6 +18,7 @@ from mua.arrays import Array
 from mua.characters.gltf.compression import decode_meshopt
 from mua.characters.gltf.fields import read_object
 from mua.errors import InputError
+from mua.files.signature import told_by
 
 COMPONENT_TYPES = {5120: np.int8, 5121: np.uint8, 5122: np.int16, 5123: np.uint16, 5125: np.uint32, 5126: np.float32}
 WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}
@@ -26,6 +27,7 @@ READ_EXTENSIONS = {
     "KHR_mesh_quantization",
     "KHR_texture_transform",
     "EXT_texture_webp",
+    "EXT_texture_avif",
     "KHR_texture_basisu",
     *MESHOPT,
     "KHR_draco_mesh_compression",
@@ -35,7 +37,6 @@ READ_EXTENSIONS = {
 # Extensions that change nothing which a base-colour texture or a skeleton could show.
 HARMLESS_EXTENSIONS = ("KHR_materials_", "KHR_lights_", "KHR_xmp", "EXT_lights_", "VRMC_", "KHR_animation_pointer")
 ADVICE = {
-    "EXT_texture_avif": "its pictures are AVIF; export it with PNG or JPEG pictures",
     "EXT_mesh_gpu_instancing": "export it with its instances as nodes of their own",
 }
 
@@ -160,7 +161,8 @@ class Document:
             else:
                 raise self.error(f"{where} has no uri and the file has no binary chunk for it")
             if not isinstance(buffer.byteLength, int) or len(data) < buffer.byteLength:
-                raise self.error(f"{where}.byteLength is {buffer.byteLength}, but {len(data)} bytes are there")
+                instead = f", {found}" if (found := told_by(data)) else ""
+                raise self.error(f"{where}.byteLength is {buffer.byteLength}, but {len(data)} bytes are there{instead}")
             self._buffers[index] = data
         return self._buffers[index]
 
@@ -191,7 +193,7 @@ def load(path: Path) -> Document:
     content = path.read_bytes()
     text, blob = _glb_chunks(path, content) if content[:4] == b"glTF" else (content, None)
     try:
-        raw = json.loads(text)
+        raw = _parsed(text)
     except ValueError as broken:
         raise InputError(f"{path}: the glTF JSON cannot be parsed: {broken}") from broken
     if not isinstance(raw, dict) or not isinstance(raw.get("asset"), dict):
@@ -207,6 +209,14 @@ def load(path: Path) -> Document:
             advice = f"; {ADVICE[name]}" if name in ADVICE else ""
             raise InputError(f"{path}: extensionsRequired names {name}, which is not supported{advice}")
     return Document(path, gltf, blob)
+
+
+def _parsed(text: bytes) -> Any:
+    """The value of a JSON text; halves of surrogate pairs, which no file or console takes, become question marks."""
+    raw = json.loads(text)
+    if b"\\ud" not in text.lower():
+        return raw
+    return json.loads(json.dumps(raw, ensure_ascii=False).encode("utf-8", "replace"))
 
 
 def _glb_chunks(path: Path, content: bytes) -> tuple[bytes, bytes | None]:

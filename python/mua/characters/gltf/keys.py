@@ -16,7 +16,7 @@ INTERPOLATIONS = ("STEP", "LINEAR", "CUBICSPLINE")
 class KeyTrack:
     """The keys of one channel."""
 
-    times: Array  # [K] seconds, increasing
+    times: Array  # [K] seconds, none before the one ahead of it
     values: Array  # [K, n], for CUBICSPLINE [3 K, n]: tangent in, value, tangent out
     kind: str  # one of INTERPOLATIONS
 
@@ -31,8 +31,7 @@ class KeyTrack:
         if self.kind == "STEP":
             return keys[before]
         before = np.minimum(before, len(self.times) - 2)
-        fraction = (times - self.times[before]) / (self.times[before + 1] - self.times[before])
-        fraction = np.clip(fraction, 0, 1)
+        fraction = _fraction(self.times, before, times)
         if spherical:
             keys = rotation.normalize(keys)
             return rotation.slerp(keys[before], keys[before + 1], fraction)
@@ -61,9 +60,15 @@ def read_keys(
     keys = len(times) * (3 if kind == "CUBICSPLINE" else 1)
     if len(values) != keys * width:
         raise document.error(f"{at}.output holds {len(values)} elements, expected {keys * width} for its {kind} keys")
-    if (np.diff(times) <= 0).any():
-        raise document.error(f"{at}.input holds times that do not increase")
+    if (np.diff(times) < 0).any():
+        raise document.error(f"{at}.input holds times that decrease")
     return KeyTrack(times, values.reshape(keys, -1), kind)
+
+
+def _fraction(times: Array, before: Array, at: Array) -> Array:
+    """How far [F] times are from the keys [F] before them to the next; 1 between two keys of one time, a jump."""
+    span = times[before + 1] - times[before]
+    return np.clip(np.divide(at - times[before], span, out=np.ones(len(at)), where=span > 0), 0, 1)
 
 
 def _cubic(times: Array, keys: Array, at: Array) -> Array:
@@ -72,7 +77,7 @@ def _cubic(times: Array, keys: Array, at: Array) -> Array:
         return np.repeat(value[:1], len(at), axis=0)
     k = np.clip(np.searchsorted(times, at, side="right") - 1, 0, len(times) - 2)
     span = (times[k + 1] - times[k])[:, None]
-    t = np.clip((at - times[k])[:, None] / span, 0, 1)
+    t = _fraction(times, k, at)[:, None]
     return np.asarray(
         (2 * t**3 - 3 * t**2 + 1) * value[k]
         + span * (t**3 - 2 * t**2 + t) * out[k]

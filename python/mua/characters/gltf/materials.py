@@ -18,6 +18,7 @@ NEAREST = 9728  # of a sampler that shows texels as squares
 ALPHA_MODES: dict[str, AlphaMode] = {"OPAQUE": "opaque", "MASK": "mask", "BLEND": "blend"}
 REPEAT: tuple[Wrap, Wrap] = ("repeat", "repeat")
 WEBP = "EXT_texture_webp"
+AVIF = "EXT_texture_avif"
 TRANSFORM = "KHR_texture_transform"
 BASIS = "KHR_texture_basisu"
 SPECULAR = "KHR_materials_pbrSpecularGlossiness"
@@ -156,8 +157,9 @@ def _base_color(material: Any) -> tuple[Any, dict[str, Any] | None]:
 def _picture(document: Document, info: dict[str, Any], where: str) -> tuple[Array, tuple[Wrap, Wrap]]:
     texture = document.item("textures", info.get("index"), field=f"{where}.index")
     source = (texture.extensions or {}).get(WEBP, {}).get("source", texture.source)
-    if source is None:  # a PNG beside it shows more
-        source = (texture.extensions or {}).get(BASIS, {}).get("source")
+    for name in (AVIF, BASIS):  # a PNG beside them shows more
+        if source is None:
+            source = (texture.extensions or {}).get(name, {}).get("source")
     image = document.item("images", source, field=f"textures[{info['index']}].source")
     field = f"images[{source}]"
     if image.bufferView is not None:
@@ -169,7 +171,9 @@ def _picture(document: Document, info: dict[str, Any], where: str) -> tuple[Arra
     try:
         picture = decode_ktx2(content) if is_ktx2(content) else pictures.decode_image(content)
     except ValueError as broken:
-        raise document.error(f"{field} is not a PNG, JPEG, WebP or KTX2 that can be decoded: {broken}") from broken
+        raise document.error(
+            f"{field} is not a PNG, JPEG, WebP, AVIF or KTX2 that can be decoded: {broken}"
+        ) from broken
     if texture.sampler is None:
         return picture, REPEAT
     sampler = document.item("samplers", texture.sampler, field=f"textures[{info['index']}].sampler")

@@ -17,6 +17,7 @@ from mua.scene import Part
 DRACO = "KHR_draco_mesh_compression"
 TRIANGLES, STRIP, FAN = 4, 5, 6
 FLOAT = 5126  # component type of an accessor
+ROUNDED = 1e-3  # weight below zero that a program wrote for none
 TYPES = {"POSITION": ("VEC3",), "TEXCOORD": ("VEC2",), "COLOR": ("VEC3", "VEC4")}
 
 
@@ -82,6 +83,10 @@ def read_parts(
         material = len(coordinates) - 1 if primitive.material is None else primitive.material
         if not 0 <= material < len(coordinates):
             raise document.error(f"{where}.material is {material}, but materials holds {len(coordinates) - 1} entries")
+        if primitive.indices is not None:
+            indices = document.item("accessors", primitive.indices, field=f"{where}.indices")
+            if indices.count == 0:  # a material that no triangle has any more
+                continue
         geometry = _geometry(document, primitive, where)
         faces = _triangles(geometry["indices"], mode)
         joints, weights = _influences(document, geometry, where, bones=bones)
@@ -197,9 +202,9 @@ def _influences(
         raise document.error(f"{where}.attributes of a skinned mesh lacks JOINTS_0 with WEIGHTS_0, expected both")
     joints = np.concatenate([geometry[name] for name in sets], axis=1).astype(int)
     weights = np.concatenate([geometry[name.replace("JOINTS", "WEIGHTS")] for name in sets], axis=1).astype(float)
-    if weights.min() < 0:
+    if weights.min() < -ROUNDED:
         raise document.error(f"{where}.attributes.WEIGHTS holds {weights.min()}, expected no negative weight")
     beyond = (joints >= bones) & (weights > 0)
     if beyond.any():
         raise document.error(f"{where}.attributes.JOINTS holds {joints[beyond].max()}, but the skin has {bones} joints")
-    return np.where(weights > 0, joints, 0), weights
+    return np.where(weights > 0, joints, 0), np.maximum(weights, 0)

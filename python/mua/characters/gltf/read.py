@@ -16,7 +16,7 @@ from mua.characters.gltf.mesh import bounds, has_unweighted, is_quantised, read_
 from mua.characters.gltf.nodes import below, local_matrix, node_name, read_tree
 from mua.characters.gltf.vrm import Vrm, read_vrm
 from mua.characters.holders import Holders
-from mua.characters.messages import UNHELD, Messages
+from mua.characters.messages import STILL, UNHELD, Messages
 from mua.characters.node_tree import Tree, chain
 from mua.scene import Part, Scene, Skin
 
@@ -88,6 +88,8 @@ def _meshes(document: Document, tree: Tree) -> Scene:
             skins.append(Skin(np.array([holder]), (np.linalg.inv(tree.world[holder]) @ tree.world[node])[None], True))
             own = len(skins) - 1
             parts += parts_of(node, skin=own, bones=None)
+    if parts and not document.gltf.skins:
+        messages.sharpen(UNHELD, STILL, beyond=len(parts))
     used = sorted({part.skin for part in parts})
     parts = [replace(part, skin=used.index(part.skin)) for part in parts]
     humanoid = _at_rest(tree, sorted(set(vrm.bones.values())))  # joints also where no mesh hangs on them

@@ -10,7 +10,8 @@ from pxr import Tf, Usd, UsdGeom, UsdSkel
 
 from mua.arrays import Array
 from mua.characters.animation import Animation, bare_animation, whole_animation
-from mua.characters.messages import UNHELD, Messages
+from mua.characters.clip_frames import frame_times
+from mua.characters.messages import STILL, UNHELD, Messages
 from mua.characters.usd.materials import read_look
 from mua.characters.usd.mesh import read_part, subsets
 from mua.characters.usd.rigid import Movers, find_movers
@@ -70,7 +71,8 @@ def _opened(path: Path) -> Usd.Stage:
     try:
         return Usd.Stage.Open(str(path))
     except Tf.ErrorException as broken:
-        raise InputError(f"{path}: USD cannot open the stage: {str(broken).strip().splitlines()[-1]}") from broken
+        lines = [line.rpartition(" : ")[2].strip(" '") for line in str(broken).strip().splitlines()]
+        raise InputError(f"{path}: USD cannot open the stage: {lines[0]}") from broken
 
 
 def _meshes(stage: Usd.Stage, path: Path) -> Scene:
@@ -87,6 +89,7 @@ def _meshes(stage: Usd.Stage, path: Path) -> Scene:
             if target.GetPrim().GetPath() in drawn:
                 skins.append(read_skin(target, bones, path))
                 held.append((drawn.pop(target.GetPrim().GetPath()), target))
+    skinned = bool(nodes)
     movers = find_movers(stage, [] if held else list(drawn.values()), first=_node_count(nodes))
     nodes.append(movers)
     for mesh in drawn.values():
@@ -97,6 +100,8 @@ def _meshes(stage: Usd.Stage, path: Path) -> Scene:
         skins.append(_rigid_skin(mesh, movers, holder))
         held.append((mesh, None))
     parts, materials = _parts(held, skins, path, messages)
+    if parts and not skinned:
+        messages.sharpen(UNHELD, STILL, beyond=len(parts))
     scene = _scene(stage, nodes, skins, name=path.stem)
     return replace(scene, parts=parts, materials=materials, notes=messages.notes())
 
@@ -183,8 +188,10 @@ def _motions(stage: Usd.Stage, nodes: Sequence[_Nodes], *, world: Array) -> list
     per_second = stage.GetTimeCodesPerSecond()
     if (end - start) / per_second < 0.5 / RATE:
         return []
-    count = int(np.floor((end - start) / per_second * RATE + 1e-3)) + 1
-    codes = start + np.arange(count) * per_second / RATE
+    where = f"{stage.GetRootLayer().identifier}: the animation"
+    joints = sum(len(group.prims) for group in nodes)
+    seconds = frame_times(start / per_second, end / per_second, RATE, nodes=joints, where=where)
+    codes = seconds * per_second
     worlds = [_worlds(nodes, Usd.TimeCode(float(code)), at_rest=False) for code in codes]
     name = animations[0].GetPrim().GetName() if animations else "Animation"
     return [Motion(name, RATE, world @ np.array(worlds), start / per_second, read_weights(animations, codes))]
