@@ -44,9 +44,14 @@ class CSharp:
             command = ["mcs", *options, f"-target:{kind}", f"-out:{target}", *map(str, files)]
             done = subprocess.run(command, capture_output=True, text=True, check=False)
             assert done.returncode == 0, done.stdout + done.stderr
+            _translate(target)
             for reference in references:  # mono looks for them beside the program, maybe that of another test run
-                copy = Path(shutil.copy(reference, scratch))
-                copy.replace(folder / copy.name)
+                for file in (_translated(reference), reference):
+                    if file.exists():
+                        copy = Path(shutil.copy(file, scratch))
+                        copy.replace(folder / copy.name)
+            if _translated(target).exists():
+                _translated(target).replace(_translated(built))
             target.replace(built)
         return built
 
@@ -75,6 +80,16 @@ class CSharp:
         done = subprocess.run(command, input=content, capture_output=True, check=False)
         assert done.returncode == 0, (done.stdout[-2000:] + done.stderr[-4000:]).decode(errors="replace")
         return done.stdout.decode()
+
+
+def _translate(assembly: Path) -> None:
+    """Translate an assembly once, in place of each time that it runs, where the system has what mono needs for that."""
+    subprocess.run(["mono", "--aot", str(assembly)], capture_output=True, check=False)
+
+
+def _translated(assembly: Path) -> Path:
+    """The machine code that mono takes for an assembly where it lies beside it."""
+    return assembly.with_name(f"{assembly.name}.so")
 
 
 def by_name(printed: str) -> dict[str, list[str]]:
