@@ -18,7 +18,6 @@ from mua.fidelity.posed_source import Moment, expressed, skinned
 from mua.scene import Part, Scene
 
 SCREEN = (288, 288)  # width, height, pixels
-SAMPLES = 2  # samples along a side of a pixel: nobody is told the overlap of these silhouettes to a thousandth
 MOVES = 0.1  # of how far an expression moves any vertex: those that it moves more are in the picture
 USUAL = 97  # percent of the vertices that are moved: a hat that one expression lifts does not make the picture
 AWAY = float(np.radians(15))  # of the view from the front, so that depth shows
@@ -56,7 +55,7 @@ class _Source:
 
     def __init__(self, context: moderngl.Context, scene: Scene, rest: Moment, camera: Camera) -> None:
         self._scene, self._rest, self._camera = scene, rest, camera
-        self._paint = Painter(context, scene.parts, scene.materials, screen=SCREEN, samples=SAMPLES)
+        self._paint = Painter(context, scene.parts, scene.materials, screen=SCREEN)
         self._places = [skinned(scene, part, rest.nodes) for part in scene.parts]
         shown = [_shown(part, at, camera) for part, at in zip(scene.parts, self._places, strict=True)]
         self._paint.near_first(self._places, camera, shown)
