@@ -5,7 +5,7 @@ import pytest
 from patches import grid_faces
 
 from mua.arrays import Array
-from mua.atlas.chart_quality import starved
+from mua.atlas.chart_quality import distorted, starved
 from mua.rig.charts import find_charts
 
 ROWS, COLUMNS = 12, 20
@@ -29,7 +29,8 @@ def found(widths: Array) -> Array:
     """Cells [ROWS, COLUMNS] that are starved."""
     uv, places, faces = sheet(widths)
     charts = np.zeros_like(find_charts(faces, uv))
-    return np.asarray(starved(uv, places, faces, charts=charts)[: ROWS * COLUMNS].reshape(ROWS, COLUMNS))
+    lost = starved(uv, places, faces, charts=charts, distorted=distorted(uv, places, charts))
+    return np.asarray(lost[: ROWS * COLUMNS].reshape(ROWS, COLUMNS))
 
 
 def test_many_small_patches_count_however_small_they_are() -> None:

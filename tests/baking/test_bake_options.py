@@ -76,15 +76,22 @@ def test_what_becomes_of_motion_files_is_refused_where_there_are_none(
     assert ended.sentence == f"error: {option}: works only with --motion, which is not given"
 
 
-@pytest.mark.parametrize(
-    "arguments",
-    [("--preset", "huge"), ("--texels", "100"), ("nobody.glb",), ("--mapping", "none.json"), ("-o", "a.glb")],
-)
-def test_a_wrong_option_is_refused_before_torch_warp_or_readers_are_loaded(arguments: tuple[str, ...]) -> None:
-    code = f"from mua.cli.bake import run\ntry: run()\nfinally: print({HEAVY!r} & set(sys.modules) or '')"
-    ended = python(code, *arguments)
-    assert ended.sentence
-    assert ended.out.strip() == ""
+WRONG = [["--preset", "huge"], ["--texels", "100"], ["nobody.glb"], ["--mapping", "none.json"], ["-o", "a.glb"]]
+REFUSED = f"""
+from mua.cli.bake import run
+for arguments in {WRONG}:
+    sys.argv[1:] = arguments
+    try:
+        run()
+    except SystemExit:
+        print(arguments, {HEAVY} & set(sys.modules) or "")
+"""
+
+
+def test_wrong_options_are_refused_before_torch_warp_or_readers_are_loaded() -> None:
+    ended = python(REFUSED)
+    assert ended.err.count("error: ") == ended.err.count("\n") == len(WRONG)
+    assert ended.out.splitlines() == [f"{arguments} " for arguments in WRONG]
 
 
 @pytest.mark.parametrize("closed", ["", "work"])

@@ -43,6 +43,10 @@ def run(*arguments: object) -> str:
 @pytest.fixture
 def uncompared(monkeypatch: pytest.MonkeyPatch) -> None:
     """A check lays no splats: for what it says of the files alone."""
+    compare_nothing(monkeypatch)
+
+
+def compare_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(check, "fidelity_of", lambda *_, **__: (None, ()))
 
 
@@ -180,7 +184,7 @@ def test_what_is_measured_of_a_motion_is_shown_with_its_unit(capsys: pytest.Capt
     assert ["wave", "0.0°"] in rows
 
 
-def test_a_lost_texture_is_among_what_looks_wrong(tmp_path: Path) -> None:
+def test_a_lost_texture_is_among_what_looks_wrong(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     fbx, _, body = figure()
     fbx.texture(fbx.material(body), "c:/textures/Cloth_01.png")
     hero, figures = fbx.save(tmp_path / "hero.fbx"), tmp_path / "hero.json"
@@ -189,6 +193,7 @@ def test_a_lost_texture_is_among_what_looks_wrong(tmp_path: Path) -> None:
     assert "in one colour (put them beside the file): Cloth_01.png." in found["warnings"][0]
     assert not any("Cloth_01" in note for note in found["notes"])
     assert text.index("Look at this: Textures that are neither in the file nor beside it") == text.index("Look at this")
+    compare_nothing(monkeypatch)
     (tmp_path / "cloth_01.png").write_bytes(picture((10, 60, 200, 255)))
     assert "Cloth_01" not in run(hero, "--check", "--texels", 64, "-o", tmp_path / "hero.muaavatar")
 
@@ -203,14 +208,16 @@ def test_a_figure_of_one_colour_that_has_places_for_pictures_looks_wrong(tmp_pat
     assert says not in run(column_file(tmp_path), "--check", "--texels", 64, "-o", output)
 
 
-def test_leaves_names_of_expressions_to_correct(tmp_path: Path) -> None:
+def test_leaves_names_of_expressions_to_correct(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     character, output = tmp_path / "hero.glb", tmp_path / "a.muaavatar"
     lean = np.where(gltf_files.POINTS[:, 1:2] > 1, [[0.1, 0, 0]], 0)
     glb = gltf_files.body()
     gltf_files.primitive(glb)["targets"] = [{"POSITION": glb.accessor(lean)}, {"POSITION": glb.accessor(-lean)}]
     glb.json["meshes"][0]["extras"] = {"targetNames": ["Fcl_MTH_A", "mund"]}
     glb.save(character)
-    run(character, "--check", "--texels", 64, "-o", output)
+    with monkeypatch.context() as patch:
+        compare_nothing(patch)
+        run(character, "--check", "--texels", 64, "-o", output)
     names = tmp_path / "a_expressions.json"
     assert json.loads(names.read_text()) == {"Fcl_MTH_A": "aa", "mund": ""}
     names.write_text(json.dumps({"Fcl_MTH_A": "aa", "mund": "jawOpen"}))

@@ -27,6 +27,11 @@ def bake_settings(shared_data: SharedData, directory: Path) -> BakeSettings:
     )
 
 
+@pytest.fixture(autouse=True, scope="module")
+def _small_atlases() -> None:
+    """None: this character has the atlas that a user's has."""
+
+
 @pytest.mark.long
 def test_student_explains_a_clothed_woman(shared_data: SharedData, tmp_path: Path) -> None:
     errors = bake(bake_settings(shared_data, tmp_path), Silent()).errors

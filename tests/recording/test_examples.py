@@ -11,22 +11,25 @@ from commands import Commands
 from examples import EXAMPLES, load_example
 from PIL import Image
 from python_blocks import python_blocks
+from trainings import FINISHED, SMALL
 
 from mua.asset.read import read
 from mua.pose.clip import Clip
 from mua.recording import Recording, TeacherWriter
+from mua.student.settings import PRESETS
 
 
 def test_a_teacher_of_ones_own_is_recorded_trained_and_seen(
     tmp_path: Path, command: Commands, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Its commands run in this process, which has loaded what they load."""
+    """Its commands run in this process, which has loaded what they load; the student takes a few steps."""
+    monkeypatch.setitem(PRESETS, "tiny", SMALL)
     example, said = load_example("own_teacher"), []
 
     def run(line: list[str], *, check: bool) -> None:
         assert (line[:3], check) == ([sys.executable, "-m", "mua.cli.train"], True)
         ended = command("train", *line[3:])
-        assert ended.status == 0, ended.err
+        assert ended.status in FINISHED, ended.err
         said.append(ended.out)
 
     monkeypatch.setattr(example, "subprocess", SimpleNamespace(run=run))

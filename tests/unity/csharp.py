@@ -29,11 +29,12 @@ class CSharp:
         name: str = "",  # the assembly's; the last source's where there is none
         references: Sequence[Path] = (),
         defines: Sequence[str] = (),
+        translated: bool = False,  # to machine code, once: for what runs many times
     ) -> Path:
         """The .exe or .dll of `sources`; a warning is an error, and fails the test with the compiler's words."""
         files = sorted(f for source in sources for f in ([source] if source.is_file() else source.rglob("*.cs")))
         options = [*OPTIONS, *(f"-define:{name}" for name in defines), *(f"-reference:{path}" for path in references)]
-        folder = self._cache / _digest([*files, *references], options)
+        folder = self._cache / _digest([*files, *references], [*options, *["--aot"] * translated])
         built = folder / f"{name or sources[-1].stem}.{'dll' if library else 'exe'}"
         if built.exists():
             return built
@@ -44,15 +45,21 @@ class CSharp:
             command = ["mcs", *options, f"-target:{kind}", f"-out:{target}", *map(str, files)]
             done = subprocess.run(command, capture_output=True, text=True, check=False)
             assert done.returncode == 0, done.stdout + done.stderr
+            if translated:  # where the system has what mono needs for that
+                subprocess.run(["mono", "--aot", str(target)], capture_output=True, check=False)
             for reference in references:  # mono looks for them beside the program, maybe that of another test run
-                copy = Path(shutil.copy(reference, scratch))
-                copy.replace(folder / copy.name)
+                for file in (_code_of(reference), reference):
+                    if file.exists():
+                        copy = Path(shutil.copy(file, scratch))
+                        copy.replace(folder / copy.name)
+            if _code_of(target).exists():
+                _code_of(target).replace(_code_of(built))
             target.replace(built)
         return built
 
     def engine(self) -> Path:
         """The stand-ins of the engine."""
-        return self.build([STAND_INS / "UnityEngine"], library=True, name="UnityEngine")
+        return self.build([STAND_INS / "UnityEngine"], library=True, name="UnityEngine", translated=True)
 
     def timeline(self) -> Path:
         """The stand-ins of com.unity.timeline."""
@@ -64,10 +71,11 @@ class CSharp:
         self, *sources: Path, name: str = "", references: Sequence[Path] = (), defines: Sequence[str] = ()
     ) -> Path:
         """A program in the assembly of the package's runtime, the last of `sources`, over the engine's stand-ins."""
-        file = self.build([RUNTIME / "Format"], library=True, name="Mua.Format")
-        motion = self.build([RUNTIME / "Motion"], library=True, name="Mua.Motion", references=[file])
+        file = self.build([RUNTIME / "Format"], library=True, name="Mua.Format", translated=True)
+        motion = self.build([RUNTIME / "Motion"], library=True, name="Mua.Motion", references=[file], translated=True)
         package = [*sorted(RUNTIME.glob("*.cs")), RUNTIME / "Kernels", *sources]
-        return self.build(package, name=name, references=[self.engine(), *references, file, motion], defines=defines)
+        references = [self.engine(), *references, file, motion]
+        return self.build(package, name=name, references=references, defines=defines, translated=True)
 
     def run(self, program: Path, *arguments: object, content: bytes = b"") -> str:
         """What the program prints; fails the test with its words where it does not end well."""
@@ -75,6 +83,11 @@ class CSharp:
         done = subprocess.run(command, input=content, capture_output=True, check=False)
         assert done.returncode == 0, (done.stdout[-2000:] + done.stderr[-4000:]).decode(errors="replace")
         return done.stdout.decode()
+
+
+def _code_of(assembly: Path) -> Path:
+    """The machine code that mono takes for an assembly where it lies beside it."""
+    return assembly.with_name(f"{assembly.name}.so")
 
 
 def by_name(printed: str) -> dict[str, list[str]]:

@@ -47,6 +47,7 @@ def starved(
     nodes: Array,  # [F, 3] int, as for find_charts
     *,
     charts: Array,  # [F]
+    distorted: Array,  # [F] bool, belong to charts that are (`distorted`)
 ) -> Array:
     """Say which triangles [F] have far fewer texels for their surface than the rest of their chart, or none.
 
@@ -62,7 +63,7 @@ def starved(
     for _ in range(SMOOTHING):
         around = touches @ (touches.T @ around)
     there, here, pulled = around.T
-    poor, narrow = here < STARVED * there, (pulled > there / 2) & ~distorted(corners, positions, charts)
+    poor, narrow = here < STARVED * there, (pulled > there / 2) & ~distorted
     patch, strip = (_patch_areas(some, touches, surface) for some in (poor, narrow))
     least = PATCH * surface.sum()
     found = (patch > least) | (strip > least) | (patch > np.bincount(charts, surface)[charts] / 2)

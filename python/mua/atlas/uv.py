@@ -36,6 +36,7 @@ class _Source:
     present: Array  # [F] bool, there are some
     nodes: Array  # [F, 3] equal where corners share vertex, UV and material
     charts: Array  # [F]
+    distorted: Array  # [F] bool, its whole chart is
     starved: Array  # [F] bool, has next to no texels for its surface, or none
 
 
@@ -57,31 +58,41 @@ def build_atlas(surfaces: Surfaces, *, uv: UvMode, size: int, detail: Detail | N
 
     The image is `size` x `size`, or the only material's own where that is square and its layout is kept.
     """
-    source = _read(without_unseen(surfaces))
+    surfaces = without_unseen(surfaces)
+    corners = _corners(surfaces)
     if uv == "keep":
+        source = _read(surfaces, corners)
         layout = _keep(source)
         trouble = _trouble(source, layout)
         notes = (f"The UV layout was kept although {trouble}.",) if trouble else ()
         layout = _Layout(layout.corners, layout.as_is, notes)
     else:
         with ThreadPoolExecutor(1) as pool:  # beside what decides which charts are kept
-            parts = _parts(source.surfaces)
-            wanted = pool.submit(wanted_fineness, source.surfaces, source.corners, parts=parts, chosen=detail or {})
+            parts = _parts(surfaces)
+            wanted = pool.submit(wanted_fineness, surfaces, corners, parts=parts, chosen=detail or {})
+            source = _read(surfaces, corners)
             wound = overlapping(source.corners, source.charts)[source.charts] > LOSS_ALLOWED
             anew = wound | source.starved if uv == "auto" else np.ones(len(source.charts), bool)
-            anew[~anew] = distorted(source.corners[~anew], source.positions[~anew], source.charts[~anew])
+            anew = _with_distorted(source, anew)
             layout = _lay_out(source, anew, detail or {}, parts=parts, wanted=wanted)
     return _character(source, layout, size)
 
 
-def _read(surfaces: Surfaces) -> _Source:
-    """Look up the UVs of all corners and find the charts that they make."""
+def _corners(surfaces: Surfaces) -> Array:
+    """The UVs [F, 3, 2] of all corners, 0 where there are none."""
     present = surfaces.uv_faces[:, 0] >= 0
     corners = np.zeros((len(surfaces.faces), 3, 2))
     corners[present] = surfaces.uv[surfaces.uv_faces[present]]
+    return corners
+
+
+def _read(surfaces: Surfaces, corners: Array) -> _Source:
+    """Find the charts that the UVs [F, 3, 2] of all corners make."""
+    present = surfaces.uv_faces[:, 0] >= 0
     rows = np.column_stack([np.repeat(surfaces.face_material, 3), surfaces.faces.ravel(), corners.reshape(-1, 2)])
     positions, nodes = surfaces.vertices[surfaces.faces], _numbered(rows)
     charts = find_charts(nodes, corners)
+    far_off = distorted(corners, positions, charts)
     return _Source(
         surfaces=surfaces,
         positions=positions,
@@ -89,8 +100,20 @@ def _read(surfaces: Surfaces) -> _Source:
         present=present,
         nodes=nodes,
         charts=charts,
-        starved=starved(corners, positions, nodes, charts=charts) | ~present,
+        distorted=far_off,
+        starved=starved(corners, positions, nodes, charts=charts, distorted=far_off) | ~present,
     )
+
+
+def _with_distorted(
+    source: _Source,
+    anew: Array,  # [F] bool, faces whose UVs are of no use
+) -> Array:
+    """These faces [F] bool and those of charts that are distorted, charts that lost faces as they are without them."""
+    rest = np.isin(source.charts, source.charts[anew]) & ~anew
+    found = anew | source.distorted
+    found[rest] = distorted(source.corners[rest], source.positions[rest], source.charts[rest])
+    return np.asarray(found)
 
 
 def _keep(source: _Source) -> _Layout:
