@@ -7,7 +7,6 @@ over another colour. The surface of a texel is what lies nearer to it than to ot
 from dataclasses import dataclass
 
 import numpy as np
-
 from scipy.spatial import cKDTree
 
 from mua.arrays import Array
