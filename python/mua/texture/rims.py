@@ -14,8 +14,8 @@ from mua.texture.footprints import Samples, TexelPoints, neighbours
 
 SIDES = 4  # neighbours of a texel that does not lie at a border
 SHARE = 0.87  # of the width of a texel's surface, that counts as the step to a neighbour: an outline is sharp
-EVEN = 0.95  # cosine between normals up to which surface beyond a seam goes on: there, all of the width counts
-NEAR = 0.75  # steps from where the next texel would lie: half of a square's diagonal, and a little more
+EVEN = 0.985  # cosine between normals from which a surface goes on evenly: at a seam there, all of the width counts
+NEAR = 0.75  # of the way to where the next texel would lie: half of a square's diagonal, and a little more
 NARROWEST, WIDEST = 0.6, 1.3  # of a surfel that does not lie at a border
 FARTHEST = 0.5  # steps to a neighbouring texel, by which a surfel is moved
 FEW = 4  # samples: fewer say too little
