@@ -73,11 +73,11 @@ def _goes_on(
     tree = cKDTree(points.places)
     goes_on = np.ones(reach.shape, bool)
     for axis, sign in np.ndindex(2, 2):
-        step = reach[:, axis, None]
-        beyond = centres + (2 * sign - 1) * step * frames[rims, :, axis]
+        step = reach[:, axis]
+        beyond = centres + ((2 * sign - 1) * step)[:, None] * frames[rims, :, axis]
         away, near = tree.query(beyond, workers=-1)
         even = np.einsum("nc,nc->n", frames[rims, :, 2], frames[near, :, 2]) > EVEN
-        goes_on[:, axis] &= even & (near != rims) & (away < NEAR * step[:, 0])
+        goes_on[:, axis] &= even & (near != rims) & (away < NEAR * step)
     return goes_on
 
 
