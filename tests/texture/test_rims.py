@@ -49,6 +49,19 @@ def test_half_is_covered_at_an_outline_that_cuts_through_texels(beyond: float) -
     assert outline == pytest.approx(12 + beyond, abs=BY_TEXEL)
 
 
+@pytest.mark.parametrize("beyond", [0.05, 0.3, 0.55, 0.8])
+def test_little_shows_through_the_seam_of_an_even_sheet(beyond: float) -> None:
+    """The charts end in different places of their squares."""
+    seam, left, right = 12 + beyond, square(12 + beyond), square(12)
+    aside = np.array([seam, 0, 0]) * SIDE
+    mesh = joined(left, replace(right, vertices=right.vertices + aside, uv=right.uv + 16 / SIZE))
+    texels, found = laid(mesh)
+    points = TexelPoints(mesh, SIZE, texels.texels, texels.triangles, texels.barycentrics).places
+    across, along = np.meshgrid(seam + np.linspace(-1, 1, 41), np.linspace(4, 8, 33))
+    places = np.stack([across.ravel(), along.ravel(), 0 * along.ravel()], axis=1) * SIDE
+    assert coverage(places, points + found.aside, found.rotations, np.exp(found.log_scales)).min() > 0.9
+
+
 def test_a_border_between_charts_is_one_where_they_touch_in_the_texture() -> None:
     """Neighbours in the texture, of charts that lie apart."""
     left, right = square(10), square(10)
