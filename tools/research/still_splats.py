@@ -16,10 +16,10 @@ import numpy as np
 
 from mua.atlas.detail import read_detail
 from mua.baking.sources import load_character
-from mua.fidelity.posed_source import Poser
 
 STILL_TEACHER = "mua.teachers.still", "mua.teachers.simulated.still"
 DECODE = "mua.decode", "mua.avatar.decode"
+POSER = "mua.fidelity.posing", "mua.fidelity.posed_source"
 
 
 def still_splats(path: Path, *, texels: int) -> dict[str, np.ndarray]:
@@ -27,7 +27,7 @@ def still_splats(path: Path, *, texels: int) -> dict[str, np.ndarray]:
     character = load_character(path, uv="auto", seed=0, detail=read_detail((), uv="auto"))
     if character.source is None:
         raise SystemExit(f"{path}: this format keeps nothing to compare with")
-    rest = Poser(character.source, character.skeleton).rest()
+    rest = _module(POSER).Poser(character.source, character.skeleton).rest()
     teacher = _module(STILL_TEACHER).StillTeacher(character, texels=texels)
     shown = teacher.frame(rest.pose, rest.stretches)
     splats = _module(DECODE).pose_splats(teacher.rig, shown.mesh, texture=shown.texture, pose=rest.pose)
