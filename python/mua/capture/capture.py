@@ -49,6 +49,7 @@ class Capture:
     clips: tuple[CaptureClip, ...]
     images: str  # pattern of images, or of videos where it names no {frame}
     masks: str | None = None  # as images; None: the alpha of the images
+    trim_masks: int = 0  # pixels by which masks are made narrower all round, because they show background
     backgrounds: str | None = None  # pattern of the empty set, an image for each camera
     meshes: str | None = None  # pattern of surfaces in the world, metres
     tracks: str | None = None  # pattern of points followed through a clip, in the world
@@ -100,7 +101,7 @@ class Capture:
             for pattern in (self.images, self.masks, self.backgrounds)
         )
         assert image is not None
-        return Files(image, mask, background, self.clip(clip).first_image + frame)
+        return Files(image, mask, background, self.clip(clip).first_image + frame, self.trim_masks)
 
     @cached_property
     def surfaces(self) -> Surfaces:
