@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from scipy.ndimage import binary_erosion, binary_fill_holes, distance_transform_edt
 
+from mua.arguments import amount
 from mua.arrays import Array
 from mua.capture.capture import Capture
 from mua.capture.fit import Seen
@@ -29,10 +30,10 @@ def wide_or_narrow(capture: Capture, views: Sequence[Seen]) -> Iterator[str]:
     now, then = fits[moves == 0][0], fits[best]
     if then < max(now + BETTER, FITTING):
         return
-    finer = np.mean([capture.camera(view.camera.name).size[1] / view.camera.size[1] for view in some])
+    finer = float(np.mean([capture.camera(view.camera.name).size[1] / view.camera.size[1] for view in some]))
     found = (
         f"All round, outlines and masks overlap by {now:.0%}; they would by {then:.0%} if masks were "
-        f"{abs(moves[best]) * finer:.0f} pixels"
+        f"{amount(max(1, round(abs(moves[best]) * finer)), 'pixel')}"
     )
     if moves[best] > 0:
         yield f"{found} narrower: set trim_masks where they show background, else make the template thicker."
