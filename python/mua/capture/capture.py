@@ -49,13 +49,13 @@ class Capture:
     clips: tuple[CaptureClip, ...]
     images: str  # pattern of images, or of videos where it names no {frame}
     masks: str | None = None  # as images; None: the alpha of the images
-    trim_masks: int = 0  # pixels by which masks are made narrower all round, because they show background
     backgrounds: str | None = None  # pattern of the empty set, an image for each camera
     meshes: str | None = None  # pattern of surfaces in the world, metres
     tracks: str | None = None  # pattern of points followed through a clip, in the world
     tracks_2d: str | None = None  # pattern of points followed through a camera's images of a clip
     template_height: float | None = None  # metres; None: as the file says
     leave_out: tuple[str, ...] = ()  # meshes, nodes or materials of the template that nobody filmed
+    trim_masks: int = 0  # pixels by which masks are made narrower all round, because they show background
 
     @property
     def file(self) -> Path:
