@@ -65,7 +65,7 @@ def test_every_field_is_written(capture: Capture) -> None:
         "meshes": "m/{clip}/{frame}.ply",
         "tracks": "{clip}.npz",
     }
-    whole = replace(capture, **patterns, tracks_2d="t/{clip}/{camera}.npz")
+    whole = replace(capture, **patterns, tracks_2d="t/{clip}/{camera}.npz", trim_masks=2)
     write_capture(whole)
     found = open_capture(capture.folder)
     assert not [field.name for field in fields(Capture) if getattr(found, field.name) == field.default]
@@ -154,6 +154,7 @@ FAULTS: dict[str, tuple[Callable[[dict[str, Any]], Any], str]] = {
     "a template that is no text": (lambda s: s.update(template=3), r"template is 3 \(int\); expected a text"),
     "an impossible height": (lambda s: s.update(template_height=1700), "template_height is 1700; expected 0.01 to 100"),
     "one thing to leave out": (lambda s: s.update(leave_out="floor"), "leave_out is 'floor'; expected a list of names"),
+    "masks trimmed by too much": (lambda s: s.update(trim_masks=64), "trim_masks is 64; expected at most 32 pixels"),
     "a clip's name with a slash": (lambda s: s["clips"][0].update(name="a/b"), r"clips\[0\]: name is 'a/b'"),
     "two clips of a name": (lambda s: s["clips"][1].update(name="walk"), "clips: two are called 'walk'"),
     "two cameras of a name": (lambda s: s["cameras"][1].update(name="cam00"), "cameras: two are called 'cam00'"),

@@ -88,6 +88,7 @@ CHANGES: dict[str, tuple[Callable[[Capture], Capture], dict[str, Any]]] = {  # o
     "middle of the image": (of_cameras(centre=(30.0, 32.0)), {}),
     "lens": (of_cameras(distortion=(-0.1, 0.05, 0.0, 0.0, 0.0)), {}),
     "numbers of images": (lambda c: replace(c, clips=(replace(c.clips[0], first_image=1), c.clips[1])), {}),
+    "trimmed masks": (lambda c: replace(c, trim_masks=2), {}),
     "height": (lambda c: c, {"rows": 24}),
     "cut": (lambda c: c, {"crop": False}),
 }

@@ -189,6 +189,9 @@ def test_masks_of_their_own_are_read_in_place_of_alpha(tmp_path: Path) -> None:
     np.testing.assert_array_equal(view.mask, mask)
     with Image.open(capture.files("walk", 2, "right").image) as image:
         np.testing.assert_allclose(255 * view.image, np.asarray(image)[..., :3], atol=1e-4)
+    narrower = replace(capture, trim_masks=3).view("walk", 2, "right")
+    np.testing.assert_array_equal(narrower.mask, np.pad(mask[8:27, 23:37], ((8, 37), (23, 27))))
+    np.testing.assert_array_equal(narrower.image, view.image)
 
 
 @pytest.mark.parametrize(("light", "cover"), [([0, 0, 1], 255), ([255, 0, 0], 255), ([2, 2, 0], 2), ([0, 0, 0], 0)])

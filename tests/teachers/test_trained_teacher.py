@@ -207,7 +207,7 @@ def test_poses_are_turned_to_fit_the_pictures(tmp_path: Path) -> None:
     before = away(poses)
     assert 3 < before < 3 * 3**0.5
     shown = material()
-    settings = replace(SETTINGS, texture=Schedule(steps=12, batch=6, lr=3e-2, cosine=False), code=0)
+    settings = replace(SETTINGS, texture=Schedule(steps=12, batch=6, lr=1e-3, cosine=False), code=0)
     image_loss = ImageLoss(teacher(settings), shown, settings, refinement=poses)
     train_teacher(image_loss, shown, settings, run=run_in(tmp_path))
     assert away(poses) < 0.9 * before
@@ -307,7 +307,8 @@ def test_all_that_is_trained_beside_the_mean_texture_has_a_rate() -> None:
     rates = {id(parameter): rate for parameters, rate in _rates(image_loss) for parameter in parameters}
     wanted = {name: id(parameter) for name, parameter in image_loss.named_parameters() if name != "teacher.mean"}
     assert set(rates) == set(wanted.values())
-    assert rates[wanted["teacher.still"]] == 60 * rates[wanted["looks"]] == 60 * rates[wanted["refinement.turns"]]
+    assert rates[wanted["teacher.still"]] == 60 * rates[wanted["looks"]]
+    assert rates[wanted["refinement.turns"]] == rates[wanted["refinement.moves"]] == 100 * rates[wanted["looks"]]
 
 
 @torch.no_grad()

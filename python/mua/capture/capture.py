@@ -55,6 +55,7 @@ class Capture:
     tracks_2d: str | None = None  # pattern of points followed through a camera's images of a clip
     template_height: float | None = None  # metres; None: as the file says
     leave_out: tuple[str, ...] = ()  # meshes, nodes or materials of the template that nobody filmed
+    trim_masks: int = 0  # pixels by which masks are made narrower all round, because they show background
 
     @property
     def file(self) -> Path:
@@ -100,7 +101,7 @@ class Capture:
             for pattern in (self.images, self.masks, self.backgrounds)
         )
         assert image is not None
-        return Files(image, mask, background, self.clip(clip).first_image + frame)
+        return Files(image, mask, background, self.clip(clip).first_image + frame, self.trim_masks)
 
     @cached_property
     def surfaces(self) -> Surfaces:

@@ -67,7 +67,7 @@ def check_capture(capture: Capture, *, frames: int | None = None) -> Checked:
     views = _views(capture, posed, frames, problems)
     problems += unlikely(capture, posed, views)
     problems += misplaced_tracks(capture, posed)
-    noted = remarks(views, fits=not problems) + ([] if problems else unseen_surface(capture, posed, views))
+    noted = remarks(capture, views, fits=not problems) + ([] if problems else unseen_surface(capture, posed, views))
     person = [vertices.mean(axis=(0, 1)) for vertices in posed.vertices.values()]
     cameras = tuple(
         CameraFit(

@@ -7,9 +7,11 @@ import numpy as np
 from mua.arrays import Array
 from mua.capture.apart import GAIN, POOR, cameras_apart, cameras_below, missing_lens
 from mua.capture.capture import Capture
+from mua.capture.colours import different_colours
 from mua.capture.conventions import better_convention
 from mua.capture.fit import Posed, Seen, by_camera, mean_overlap
 from mua.capture.image_faults import image_faults, sentences
+from mua.capture.mask_edges import holes, wide_or_narrow
 from mua.capture.silhouette import POINTS, overlap, posed_template, rough_overlap, silhouette
 from mua.capture.tracks import PointTracks, read_tracks
 from mua.errors import InputError
@@ -53,14 +55,15 @@ def unlikely(capture: Capture, posed: Posed, views: Sequence[Seen]) -> list[str]
     return [*problems, *cameras_apart(posed, filled), *missing_lens(posed, filled)]
 
 
-def remarks(views: Sequence[Seen], *, fits: bool) -> list[str]:
-    """Remarks on what is worth a look: masks without the person and, where all else `fits`, low overlaps."""
+def remarks(capture: Capture, views: Sequence[Seen], *, fits: bool) -> list[str]:
+    """What is worth a look: empty masks, their edges and holes, colours and, where all else `fits`, low overlaps."""
     filled = [view for view in views if view.mask.any()]
-    found, mean = list(_sometimes_empty(views)), mean_overlap(filled)
+    edges, mean = list(wide_or_narrow(capture, filled)), mean_overlap(filled)
+    found = [*_sometimes_empty(views), *edges, *holes(filled), *different_colours(filled)]
     if not fits or not filled:
         return found
     found += cameras_below(filled)
-    if mean >= GOOD:
+    if mean >= GOOD or edges:
         return found
     return [
         *found,

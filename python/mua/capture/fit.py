@@ -10,11 +10,13 @@ from mua.arrays import Array
 from mua.atlas.character_surfaces import Surfaces
 from mua.capture.camera import CaptureCamera
 from mua.capture.capture import Capture, CaptureClip
-from mua.capture.silhouette import COVERED, overlap, posed_template, silhouette
+from mua.capture.silhouette import COVERED, overlap, pixels, posed_template, shown, silhouette
 from mua.capture.view import smaller
 
 ROWS = 256  # of the images that are compared
 FRAMES = 5  # of each clip that are looked at
+POINTS = 1000  # triangles whose colours are compared, at most
+FACING = 0.5  # cosine between normal and camera, from which on a triangle's colour is trusted
 VIEWS = 160  # at most, unless a number of frames is asked for
 
 
@@ -28,6 +30,7 @@ class Seen:
     mask: Array  # [h, w] bool
     covered: Array  # [h, w] bool
     overlap: float  # 0..1
+    colours: Array  # [POINTS, 3] of triangles all over the template, 0..1; NaN where the view does not show one
 
     def __str__(self) -> str:
         return f"camera {self.camera.name}, clip {self.clip}, frame {self.frame}"
@@ -63,10 +66,24 @@ def chosen_frames(capture: Capture, clip: CaptureClip, frames: int | None) -> li
 def look_at(capture: Capture, posed: Posed, clip: str, frame: int, camera: CaptureCamera) -> Seen:
     """Read a view and draw the template into it; raises InputError where it cannot be read."""
     rows = min(ROWS, camera.size[1])
-    mask = capture.view(clip, frame, camera.name, rows=rows).mask >= COVERED
-    small = smaller(camera, rows)
+    view = capture.view(clip, frame, camera.name, rows=rows)
+    small, mask = smaller(camera, rows), view.mask >= COVERED
     covered = posed.covers(clip, frame, small)
-    return Seen(clip, frame, small, mask, covered, overlap(covered, mask))
+    corners = posed.vertices[clip][frame][posed.surfaces.faces[:: -(-len(posed.surfaces.faces) // POINTS)]]
+    return Seen(clip, frame, small, mask, covered, overlap(covered, mask), _colours(corners, small, view.image, mask))
+
+
+def _colours(
+    corners: Array,  # [P, 3, 3] metres
+    camera: CaptureCamera,
+    image: Array,  # [h, w, 3]
+    mask: Array,  # [h, w] bool
+) -> Array:
+    """The colours [P, 3] of triangles; NaN where they are turned away, or outside image or mask."""
+    places, _ = pixels(camera, corners.mean(axis=1))
+    column, row = np.clip(places, 0, np.subtract(camera.size, 1)).astype(int).T
+    seen = shown(corners, camera, facing=FACING) & mask[row, column]
+    return np.where(seen[:, None], image[row, column], np.nan)
 
 
 def by_camera(views: Sequence[Seen]) -> Mapping[str, list[Seen]]:

@@ -19,6 +19,7 @@ from mua.files.inputs import CAPTURE, require_capture, require_file
 from mua.limits import LARGEST_RATE, LEAST_RATE
 
 LARGEST_SIDE = 1 << 15  # pixels
+MOST_TRIMMED = 32  # pixels; wider ones have lost the person's shape
 ROTATION_BOUND = 1e-3  # what rounding to four digits leaves of a rotation
 PLACES = {  # what each pattern may name
     "images": ("clip", "camera", "frame"),
@@ -30,7 +31,7 @@ PLACES = {  # what each pattern may name
 }
 OF_WHOLE_CLIPS = ("tracks", "tracks_2d")  # whose first frame is that of the clip
 NEEDED = ("format", "version", "name", "rate", "template", "clips", "images", "cameras")
-OPTIONAL = ("masks", "backgrounds", "meshes", "tracks", "tracks_2d", "template_height", "leave_out")
+OPTIONAL = ("masks", "trim_masks", "backgrounds", "meshes", "tracks", "tracks_2d", "template_height", "leave_out")
 
 
 def open_capture(folder: PathLike) -> Capture:
@@ -55,6 +56,7 @@ def open_capture(folder: PathLike) -> Capture:
         clips=tuple(_clip(clip, f"{file}: clips[{i}]", file) for i, clip in enumerate(_list(fields, "clips", file))),
         cameras=tuple(_camera(one, f"{file}: cameras[{i}]") for i, one in enumerate(_list(fields, "cameras", file))),
         images=_text(fields["images"], f"{file}: images"),
+        trim_masks=_count(fields.get("trim_masks", 0), f"{file}: trim_masks", 0, most=MOST_TRIMMED),
         **{
             field: _text(fields[field], f"{file}: {field}") for field in PLACES if field != "images" and field in fields
         },
@@ -215,9 +217,11 @@ def _flag(value: Any, where: str) -> bool:
     return value
 
 
-def _count(value: Any, where: str, least: int) -> int:
+def _count(value: Any, where: str, least: int, most: int | None = None) -> int:
     if not isinstance(value, int) or isinstance(value, bool) or value < least:
         raise InputError(f"{where} is {describe(value)}; expected a whole number of at least {least}")
+    if most is not None and value > most:
+        raise InputError(f"{where} is {value}; expected at most {most} pixels")
     return value
 
 

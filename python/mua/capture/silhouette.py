@@ -31,6 +31,26 @@ def pixels(camera: CaptureCamera, points: Array) -> tuple[Array, Array]:
     return places, depth
 
 
+def shown(
+    corners: Array,  # [F, 3, 3] metres
+    camera: CaptureCamera,
+    *,
+    facing: float = 0.0,  # least cosine between the normal and the way to the camera
+) -> Array:
+    """Whether the middle of each triangle is in the image and its front side faces the camera, [F] bool."""
+    middles = corners.mean(axis=1)
+    places, depth = pixels(camera, middles)
+    inside = (depth > 0) & (places >= 0).all(axis=-1) & (places < camera.size).all(axis=-1)
+    normals, way = doubled_areas(corners), camera.position - middles
+    lengths = np.linalg.norm(normals, axis=-1) * np.linalg.norm(way, axis=-1)
+    return np.asarray(inside & (np.sum(normals * way, axis=-1) > facing * lengths))
+
+
+def doubled_areas(corners: Array) -> Array:
+    """Normals [F, 3] of triangles [F, 3, 3], as long as twice their area."""
+    return np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+
+
 def silhouette(vertices: Array, faces: Array, camera: CaptureCamera) -> Array:
     """Whether the surface with `vertices` [V, 3] and `faces` [F, 3] covers each pixel's middle, [H, W] bool."""
     return fine_silhouette(vertices, faces, camera)[FINER // 2 :: FINER, FINER // 2 :: FINER]

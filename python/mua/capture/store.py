@@ -17,7 +17,7 @@ from mua.capture.camera import UNDISTORTED, CaptureCamera
 from mua.capture.capture import Capture
 from mua.capture.pictures import as_mask, read_mask, read_picture, require_size
 from mua.capture.video import VIDEOS, MissingImage, video_frames
-from mua.capture.view import MARGIN, Box, RawFrame, View, in_steps, look, nobody, smaller, view_of
+from mua.capture.view import MARGIN, Box, RawFrame, View, in_steps, look, nobody, smaller, trimmed, view_of
 from mua.files.write import replacing
 
 LIMIT = 50_000_000_000  # bytes that a store may hold; beyond it, views are read anew each time
@@ -88,7 +88,7 @@ class ViewStore:
                 if place is None or (masks is not None and mask is None):
                     return
                 cover = read_mask(place, number=0, size=camera.size) if mask is None else as_mask(mask)
-                yield RawFrame(image, cover, clear=False)
+                yield trimmed(RawFrame(image, cover, clear=False), files.trim)
 
     def _height(self, camera: CaptureCamera) -> int | None:
         """Rows of a camera's whole image."""
@@ -103,8 +103,14 @@ class ViewStore:
         files = self._capture.files(clip, frame, camera.name)
         states = [path.stat() for path in (files.image, files.mask) if path is not None and path.is_file()]
         made_from = (
-            *(self._crop, self._height(camera), MARGIN, files.number, camera.size, camera.focal, camera.centre),
-            *(camera.distortion, [(state.st_size, state.st_mtime_ns) for state in states]),
+            *(self._crop, self._height(camera), MARGIN, files.number, files.trim),
+            *(
+                camera.size,
+                camera.focal,
+                camera.centre,
+                camera.distortion,
+                [(state.st_size, state.st_mtime_ns) for state in states],
+            ),
         )
         digest = hashlib.sha256(repr(made_from).encode()).hexdigest()[:16]
         return self._folder / clip / camera.name / f"{frame:06d}-{digest}.png"

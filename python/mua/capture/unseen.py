@@ -4,10 +4,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from mua.arrays import Array
 from mua.capture.capture import Capture
 from mua.capture.fit import Posed, Seen
-from mua.capture.silhouette import pixels
+from mua.capture.silhouette import doubled_areas, shown
 
 MUCH = 0.2  # of the surface: soles, armpits and the inside of clothes are less
 NAMED = 3  # joints
@@ -25,8 +24,8 @@ def unseen_surface(capture: Capture, posed: Posed, views: Sequence[Seen]) -> lis
     faces = posed.surfaces.faces
     seen = np.zeros(len(faces), bool)
     for view in trained:
-        seen |= _shown(posed.vertices[view.clip][view.frame][faces], view)
-    areas = np.linalg.norm(_normals(posed.surfaces.vertices[faces]), axis=-1)
+        seen |= shown(posed.vertices[view.clip][view.frame][faces], view.camera)
+    areas = np.linalg.norm(doubled_areas(posed.surfaces.vertices[faces]), axis=-1)
     share = float(areas[~seen].sum() / areas.sum())
     if share < MUCH:
         return []
@@ -37,20 +36,3 @@ def unseen_surface(capture: Capture, posed: Posed, views: Sequence[Seen]) -> lis
         f"No training camera shows {share:.0%} of the template in the frames that were looked at, most of it at "
         f"{named}: it will be guessed. Add cameras, or move them until the whole person is in their images."
     ]
-
-
-def _shown(
-    corners: Array,  # [F, 3, 3] metres
-    view: Seen,
-) -> Array:
-    """Whether the middle of each triangle is in the image and its front side faces the camera, [F] bool."""
-    middles = corners.mean(axis=1)
-    places, depth = pixels(view.camera, middles)
-    inside = (depth > 0) & (places >= 0).all(axis=-1) & (places < view.camera.size).all(axis=-1)
-    towards = np.sum(_normals(corners) * (view.camera.position - middles), axis=-1)
-    return np.asarray(inside & (towards > 0))
-
-
-def _normals(corners: Array) -> Array:
-    """Of triangles [F, 3, 3], as long as twice their area."""
-    return np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])

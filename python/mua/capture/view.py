@@ -27,6 +27,7 @@ class Files:
     mask: Path | None  # None: the alpha of the image
     background: Path | None
     number: int
+    trim: int = 0  # pixels by which masks are made narrower
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +65,8 @@ def read_view(files: Files, camera: CaptureCamera, *, crop: bool = False, rows: 
     if files.background is not None:
         require_file(files.background)
         background = read_picture(files.background, number=0, size=camera.size)[..., :3]
-    return view_of(read_frame(files, camera), camera, crop=crop, rows=rows, background=background)
+    taken = trimmed(read_frame(files, camera), files.trim)
+    return view_of(taken, camera, crop=crop, rows=rows, background=background)
 
 
 def read_frame(files: Files, camera: CaptureCamera) -> RawFrame:
@@ -76,6 +78,17 @@ def read_frame(files: Files, camera: CaptureCamera) -> RawFrame:
     if image.shape[2] < 4:
         raise InputError(f"{files.image}: has no alpha; expected it to have one, or capture.json to name masks")
     return RawFrame(image[..., :3], image[..., 3:], clear=True)
+
+
+def trimmed(taken: RawFrame, pixels: int) -> RawFrame:
+    """The frame with its mask so many pixels narrower all round."""
+    if not pixels:
+        return taken
+    from scipy.ndimage import minimum_filter  # slow to load, and most captures need none
+
+    rows, columns = np.ogrid[-pixels : pixels + 1, -pixels : pixels + 1]
+    disc = rows**2 + columns**2 <= pixels**2
+    return replace(taken, mask=minimum_filter(taken.mask[..., 0], footprint=disc, mode="nearest")[..., None])
 
 
 def nobody(camera: CaptureCamera, *, rows: int | None = None) -> View:

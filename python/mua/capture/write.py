@@ -36,6 +36,8 @@ def _described(capture: Capture) -> dict[str, Any]:
     for field in ("images", "masks", "backgrounds", "meshes", "tracks", "tracks_2d"):
         if getattr(capture, field) is not None:
             described[field] = getattr(capture, field)
+    if capture.trim_masks:
+        described["trim_masks"] = int(capture.trim_masks)
     return described | {"cameras": [_camera(camera) for camera in capture.cameras]}
 
 

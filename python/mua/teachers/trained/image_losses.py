@@ -125,7 +125,7 @@ class ImageLoss(nn.Module):
         teacher, colours = self.teacher, slice(CONSTANT.start, None)
         painted = frame.texture[:, colours] - teacher.surfels[:, colours]
         loss = loss + self._weights.smooth * teacher.nets.surface.roughness(painted)
-        beside = self.looks[index].square().sum()
+        loss = loss + self._weights.beside * self.looks[index].square().sum()
         if self.refinement is not None:
-            beside = beside + self.refinement.size()
-        return loss + self._weights.beside * beside + self._weights.correction * self.correction.variance()
+            loss = loss + self._weights.refinement * self.refinement.size()
+        return loss + self._weights.correction * self.correction.variance()

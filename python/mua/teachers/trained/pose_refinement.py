@@ -66,8 +66,8 @@ class PoseRefinement(nn.Module):
         return nn.functional.normalize(torch.where(twist.norm() < VANISHES, upright, twist), dim=0)
 
     def size(self) -> Tensor:
-        """The mean square of the corrections."""
-        return self.turns.square().mean() + self.moves.square().mean()
+        """The squared corrections, as shares of what is allowed, summed over a frame and averaged over frames."""
+        return self.turns.square().sum(dim=(1, 2)).mean() + self.moves.square().sum(dim=1).mean()
 
     def _skinning(self, rotations: Tensor, translations: Tensor) -> Tensor:
         """Dual quaternions as `mua.pose.skeleton.Skeleton.skinning` gives them, with gradients."""

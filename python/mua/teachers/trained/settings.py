@@ -20,7 +20,8 @@ class LossWeights:
     tracks: float = 0.02  # squared distance of tracked points in centimetres on a person, where there are tracks
     residual: float = 1e-3  # square of what the networks add to the geometry, in `texels.UNITS`
     smooth: float = 3e-3  # squared difference between neighbouring texels of what is added to the surfels' colours
-    beside: float = 1e-2  # square of frames' codes and of the refinement of poses
+    beside: float = 1e-2  # square of frames' codes
+    refinement: float = 1e-3  # squared corrections of a frame's pose
     correction: float = 0.1  # squared difference of a camera's colours from the others'
 
 

@@ -15,7 +15,7 @@ MEAN, TEXTURE = "mean texture", "texels"
 STAGES = (MEAN, TEXTURE)
 CHECKPOINT_STEPS = 50  # a step takes up to seconds
 # Learning rates over that of the networks, of parameters that each affect a single texel, frame or camera.
-STILL_RATE, LIGHT_RATE, BESIDE_RATE = 60.0, 20.0, 1.0
+STILL_RATE, LIGHT_RATE, BESIDE_RATE, POSE_RATE = 60.0, 20.0, 1.0, 100.0
 
 
 def train_teacher(image_loss: ImageLoss, material: Material, settings: TeacherSettings, *, run: Run) -> None:
@@ -50,13 +50,14 @@ def _rates(image_loss: ImageLoss) -> list[tuple[list[nn.Parameter], float]]:
     teacher = image_loss.teacher
     beside = [image_loss.correction.change] if image_loss.colour_correction else []
     beside += [image_loss.looks] if image_loss.looks.numel() else []
-    if image_loss.refinement is not None:
-        beside += [image_loss.refinement.turns, image_loss.refinement.moves]
+    refinement = image_loss.refinement
+    poses = [] if refinement is None else [refinement.turns, refinement.moves]
     return [
         (list(teacher.nets.parameters()), 1.0),
         ([teacher.still], STILL_RATE),
         ([teacher.light.gains], LIGHT_RATE),
         *([(beside, BESIDE_RATE)] if beside else []),
+        *([(poses, POSE_RATE)] if poses else []),
     ]
 
 
