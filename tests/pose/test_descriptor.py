@@ -14,6 +14,7 @@ from mua.pose.descriptor import (
     groups_of,
     heading_of,
     normalization,
+    turns_of,
     units_of,
 )
 from mua.pose.encoding import PoseEncoding
@@ -199,6 +200,22 @@ def test_normalizes_but_does_not_stretch_constant_columns() -> None:
 def test_what_varies_by_less_than_a_millimetre_is_not_stretched(deviation: float, stretched: bool) -> None:
     columns = deviation * np.array([[-1.0], [1]])
     assert normalization(columns, np.ones(1)).scale == pytest.approx([deviation if stretched else 1])
+
+
+def test_turns_count_by_their_angle_and_lengths_by_how_they_vary() -> None:
+    """A joint that turns a tenth as far is raised less, and what hardly varies beside its angle is not raised."""
+    encoding = PoseEncoding((1, 2), rate=30.0, window=1, translated=(2,))
+    spread = np.full(encoding.width, 1e-2)
+    spread[[15, 21, 27]] = 0.3, 0.4, 0.04  # one number of the root, of a joint and of one that turns little
+    columns = np.random.default_rng(7).normal(size=(400, encoding.width)) * spread
+    turns = turns_of(encoding)
+    found = normalization(columns, units_of(encoding, 1.0), turns).scale
+    lengths = turns < 0
+    assert list(np.flatnonzero(lengths)) == [12, 13, 14, 33, 34, 35]
+    np.testing.assert_allclose(found[lengths], columns.std(axis=0)[lengths])
+    assert all(np.ptp(found[turns == group]) == 0 for group in np.unique(turns[~lengths]))
+    much, little = ((columns.std(axis=0) / found)[[21, 27]]).tolist()
+    assert much / 10 < little < much / 2
 
 
 def test_a_small_figures_lengths_count_as_much_as_a_persons() -> None:

@@ -14,6 +14,7 @@ from mua.pose.skeleton import Skeleton
 STILL = np.radians(0.1)  # standard deviation below which a joint counts as not moving
 MOVES = 1e-3  # share of the character's size: standard deviation below which a joint counts as not translated
 SCALE_FLOOR = 1e-3  # a millimetre for a person of 1.75 m, or 0.06 degrees: smaller variation is not scaled up
+SLIGHT = 0.4  # relative to how far joints turn: one that turns by less than that counts for less
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,10 +84,27 @@ def choose_translated(
 def normalization(
     descriptors: Array,  # [N, D]
     units: Array,  # [D] from `units_of`
+    turns: Array | None = None,  # [D] from `turns_of`; None: every column has a scale of its own
 ) -> Normalization:
-    """Mean and scale of descriptors; columns that hardly vary keep a scale of one unit."""
+    """Mean and scale of descriptors; columns that hardly vary keep a scale of one unit.
+
+    With `turns` the numbers that say how a joint is turned share a scale, so that those across its axis, which hardly
+    vary, are not raised to the level of those along it. A joint that turns little is not raised to the level of others
+    either: how the surface bends follows the angle, not the angle relative to those of training.
+    """
     deviation = descriptors.std(axis=0)
+    turned = np.zeros(len(deviation), bool) if turns is None else turns >= 0
+    if turns is not None and turned.any():
+        counts, squares = np.bincount(turns[turned]), np.bincount(turns[turned], deviation[turned] ** 2)
+        shared = np.sqrt(squares[turns[turned]] / counts[turns[turned]])
+        deviation[turned] = shared + SLIGHT * np.sqrt(np.mean(deviation[turned] ** 2))
     return Normalization(descriptors.mean(axis=0), np.where(deviation > SCALE_FLOOR * units, deviation, units))
+
+
+def turns_of(encoding: PoseEncoding) -> Array:
+    """The group of each number [D] of a descriptor, as in `groups_of`, and -1 for lengths."""
+    lengths = np.array([part.lengths for part in encoding.parts for _ in range(part.width)])
+    return np.where(lengths, -1, groups_of(encoding))
 
 
 def units_of(

@@ -16,7 +16,7 @@ from mua.arrays import Array
 from mua.errors import InputError
 from mua.pose.clip import is_range, is_rest
 from mua.pose.components import principal_components
-from mua.pose.descriptor import choose_joints, choose_translated, describe, groups_of, normalization, units_of
+from mua.pose.descriptor import choose_joints, choose_translated, describe, groups_of, normalization, turns_of, units_of
 from mua.pose.encoding import PoseEncoding
 from mua.recording import Recording
 from mua.rig.bones import figure_scale
@@ -94,7 +94,8 @@ def prepare(recording: Recording, settings: Settings) -> tuple[Student, Samples]
     encoding = encoding_of(recording, settings)
     descriptors = describe_frames(recording, encoding)
     units = units_of(encoding, figure_scale(recording.rig.mesh.vertices))
-    components = principal_components(descriptors, normalization(descriptors, units), units, groups_of(encoding))
+    scaled = normalization(descriptors, units, turns_of(encoding))
+    components = principal_components(descriptors, scaled, units, groups_of(encoding))
     student = Student(
         settings,
         encoding=encoding,
