@@ -39,7 +39,7 @@ class StillTeacher:
         """Prepare a texture of `texels` x `texels`; seconds of work, fewer with splats that are `laid`."""
         mesh = character.mesh
         with ThreadPoolExecutor(2) as pool:
-            found = CharacterTexels(character, texels, pool) if laid is None else None
+            found = None if laid else CharacterTexels(character, texels, pool)
             self.rig, self._template = build_rig(character, texels=texels, template_vertices=template_vertices)
             if found is not None:
                 laid = SurfaceTexels(character, self.rig, found)
