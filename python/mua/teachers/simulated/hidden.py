@@ -69,14 +69,14 @@ def look_out(
                         seen[i] = True
 
 
-def seen_texels(
+def showing_instead(
     character: Character,
     corners: Array,  # [N, 3] vertices of the triangle of each texel
     barycentrics: Array,  # [N, 3]
     *,
     solid: Array,  # [N] bool: texels that nothing shows through
 ) -> Array:
-    """Which texels [N] some view reaches in some pose or expression."""
+    """The texel [N] whose colour each one shows: its own, or that of the nearest solid one that can be seen."""
     cut = np.asarray(np.isin(character.mesh.faces, corners[~solid]).all(axis=1))
     covers = _Covers(character, cut=cut)
     lift = LIFT * float(np.ptp(character.mesh.vertices, axis=0).max())
@@ -90,19 +90,11 @@ def seen_texels(
         away /= np.linalg.norm(away, axis=1, keepdims=True)
         asked[asked] = covers.seen(points, places, away=away, lift=lift)
         hidden = hidden[~asked]
-    return np.asarray(~np.isin(np.arange(len(corners)), hidden))
-
-
-def showing_instead(
-    points: Array,  # [N, 3] of the texels
-    seen: Array,  # [N] bool
-    *,
-    solid: Array,  # [N] bool: texels that nothing shows through
-) -> Array:
-    """The texel [N] whose colour each one shows: its own, or that of the nearest solid one that can be seen."""
-    shown, hidden, shows = np.arange(len(points)), np.flatnonzero(~seen), np.flatnonzero(seen & solid)
-    if len(hidden) and len(shows):
-        shown[hidden] = shows[cKDTree(points[shows]).query(points[hidden])[1]]
+    shown, own = np.arange(len(corners)), np.ones(len(corners), bool)
+    own[hidden] = False
+    if len(hidden) and (own & solid).any():
+        seen = np.flatnonzero(own & solid)
+        shown[hidden] = seen[cKDTree(own_points[seen]).query(own_points[hidden])[1]]
     return shown
 
 

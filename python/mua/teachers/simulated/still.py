@@ -1,6 +1,5 @@
 """The simulated character without simulation and light: what its splats show of the character's own surface."""
 
-from concurrent.futures import ThreadPoolExecutor
 from copy import copy
 from typing import Self
 
@@ -18,7 +17,7 @@ from mua.teacher import Light, TeacherFrame
 from mua.teachers.simulated.chords import straighten
 from mua.teachers.simulated.skinned_surface import MovedSurface, SkinnedSurface
 from mua.teachers.simulated.smoothing import TURN_WAVELENGTH, low_pass
-from mua.teachers.simulated.texels import CharacterTexels, SurfaceTexels
+from mua.teachers.simulated.texels import SurfaceTexels
 from mua.texture.surfels import SurfaceFrames
 
 
@@ -38,17 +37,12 @@ class StillTeacher:
     ) -> None:
         """Prepare a texture of `texels` x `texels`; seconds of work, fewer with splats that are `laid`."""
         mesh = character.mesh
-        with ThreadPoolExecutor(2) as pool:
-            found = None if laid else CharacterTexels(character, texels, pool)
-            self.rig, self._template = build_rig(character, texels=texels, template_vertices=template_vertices)
-            if found is not None:
-                laid = SurfaceTexels(character, self.rig, found)
-        assert laid is not None
-        self.laid = laid
+        self.rig, self._template = build_rig(character, texels=texels, template_vertices=template_vertices)
         self._character = character
         self._skinned = SkinnedSurface(character)
         self._surface = SurfaceFrames(mesh.vertices, mesh.faces)
         self._smooth_turn = low_pass(mesh.vertices, mesh.faces, TURN_WAVELENGTH * figure_scale(mesh.vertices))
+        self.laid = SurfaceTexels(character, self.rig) if laid is None else laid
 
     def corrected(
         self,

@@ -13,7 +13,7 @@ from mua.rig.character import Character
 from mua.rig.rig import Rig
 from mua.rig.texel_map import TexelMap, build_texel_map
 from mua.teacher import Light
-from mua.teachers.simulated.hidden import SOLID, seen_texels, showing_instead
+from mua.teachers.simulated.hidden import SOLID, showing_instead
 from mua.texture.albedo import FINER, finer_picture, sample_albedo
 from mua.texture.deconvolution import deconvolved
 from mua.texture.depths import depths
@@ -28,20 +28,6 @@ MOST_CLEAR = 6.0  # negative logit of one whose alpha is 0: below what changes a
 SHEEN_TINT = 0.5  # how far the sheen has the colour of the surface, as cloth does, rather than that of the lamp
 
 
-class CharacterTexels:
-    """What is known of a character's texels without its rig; what takes long is found out while that is made."""
-
-    def __init__(self, character: Character, size: int, pool: ThreadPoolExecutor) -> None:
-        mesh = character.mesh
-        self.map = build_texel_map(mesh, size)
-        self.corners = mesh.faces[self.map.triangles]
-        self.uv = np.einsum("nk,nkc->nc", self.map.barycentrics, mesh.uv[mesh.uv_faces[self.map.triangles]])
-        self.albedo = sample_albedo(character.base_color, self.uv, size)
-        solid = self.albedo[:, 3] >= SOLID
-        self.seen = pool.submit(seen_texels, character, self.corners, self.map.barycentrics, solid=solid)
-        self.picture = pool.submit(_picture, character.base_color, size)
-
-
 class SurfaceTexels:
     """The texels of a rig as points of the dense surface that the rig's template stands for."""
 
@@ -49,18 +35,22 @@ class SurfaceTexels:
         self,
         character: Character,
         rig: Rig,
-        found: CharacterTexels,
     ) -> None:
-        mesh, texels, dense = character.mesh, rig.texels, found.map
+        mesh, texels = character.mesh, rig.texels
+        dense = build_texel_map(mesh, texels.size)
         rows = np.searchsorted(dense.texels, texels.texels)  # those of the rig are among them
-        triangles, barycentrics, uv = dense.triangles[rows], dense.barycentrics[rows], found.uv[rows]
-        albedo = found.albedo[rows]
-        self._dense = _weights(found.corners[rows], barycentrics, len(mesh.vertices))
+        triangles, barycentrics = dense.triangles[rows], dense.barycentrics[rows]
+        corners = mesh.faces[triangles]
+        self._dense = _weights(corners, barycentrics, len(mesh.vertices))
         self._coarse = _weights(rig.mesh.faces[texels.triangles], texels.barycentrics, len(rig.mesh.vertices))
         relief = self._dense @ mesh.vertices - self._coarse @ rig.mesh.vertices
-        picture, wanted = found.picture.result()
-        with ThreadPoolExecutor(1) as pool:
+        picture = finer_picture(character.base_color, texels.size)
+        wanted = sharpness(picture)
+        uv = np.einsum("nk,nkc->nc", barycentrics, mesh.uv[mesh.uv_faces[triangles]])
+        albedo = sample_albedo(character.base_color, uv, texels.size)
+        with ThreadPoolExecutor(2) as pool:
             sharp = pool.submit(_sharp, picture, wanted)
+            shown = pool.submit(showing_instead, character, corners, barycentrics, solid=albedo[:, 3] >= SOLID)
             surfels = rest_surfels(
                 mesh,
                 size=texels.size,
@@ -71,12 +61,11 @@ class SurfaceTexels:
             )
         relief += surfels.aside
         deviations = np.exp(surfels.log_scales[:, :2])
-        places = self._dense @ mesh.vertices
-        below = depths(places, normals=surfels.normals, deviations=deviations.min(axis=1))
+        below = depths(self._dense @ mesh.vertices, normals=surfels.normals, deviations=deviations.min(axis=1))
         relief -= below[:, None] * surfels.normals
         at_home = _at_home(uv, texels) & ~surfels.at_border  # beyond it lies the image of another chart
         albedo[at_home, :3] = sharp.result()[texels.texels[at_home]]
-        albedo[:, :3] = albedo[showing_instead(places, found.seen.result()[rows], solid=albedo[:, 3] >= SOLID), :3]
+        albedo[:, :3] = albedo[shown.result(), :3]
         self._relief, self._rest, self._log_scales, self._albedo = (
             np.ascontiguousarray(rows.T, dtype=np.float32)
             for rows in (relief, surfels.smooth, surfels.log_scales, albedo[:, :3])
@@ -158,12 +147,6 @@ def _at_home(
     row, column = np.divmod(texels.texels, texels.size)
     apart = np.abs(uv * texels.size - 0.5 - np.stack([column, row], axis=1)).max(axis=1)
     return np.asarray(apart <= 0.5)
-
-
-def _picture(base_color: Array, size: int) -> tuple[Array, Sharpness]:
-    """The image of `size` x `size` texels, finer than these, and how sharp it is."""
-    picture = finer_picture(base_color, size)
-    return picture, sharpness(picture)
 
 
 def _sharp(picture: Array, wanted: Sharpness) -> Array:
